@@ -251,13 +251,13 @@ def studied(phea, name, folder):
     shutil.rmtree(runs, ignore_errors=True)
     campaign, _ = asked(phea, "campaign", written, "--runs", str(RUNS), "--seed", "1", "--out", runs)
     held = campaign["requirements"][0]
-    required = f"{held['overshoot_percent']:g} %, {held['settling_time_s']:g} s"
+    required = "{overshoot_percent:g} %, {settling_time_s:g} s".format(**held["required"])
     with open(runs / "runs.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     completed = [[float(row[f"event1_{one}"]) for one in METRICS] for row in rows if row["status"] == "completed"]
     undetermined = len(rows) - len(completed)
     satisfied = f"{held['satisfied']} of {held['runs']}" + (f", {undetermined} undetermined" if undetermined else "")
-    overshoot, settling = max(completed, key=lambda one: max(reached / held[name] for name, reached in zip(METRICS, one)))
+    overshoot, settling = max(completed, key=lambda one: max(reached / held["required"][name] for name, reached in zip(METRICS, one)))
     return [*row, satisfied, f"{overshoot:.3g} %, {settling:.3g} s for {required}"]
 
 

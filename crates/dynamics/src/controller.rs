@@ -58,7 +58,19 @@ impl Timing {
     }
 }
 
-/// Behaviour of the integral part while the command is limited.
+/// Behaviour of the integral part while the command is limited: u the command within its limit
+/// u_m, u_w the command without it, e the error.
+///
+/// ```text
+/// none               x' = A x + B e
+/// back calculation   x' = A x + B (e + (u - u_w)/D)         D the feedthrough of G: this error would give u
+/// clamping           x' = (1 - h) (A x + B e)               h = (|u_w| - u_m)/(10^-4 u_m) within [0, 1] while u_w e > 0, else 0
+/// ```
+///
+/// A sampled controller steps from x_k to x_k+1 accordingly: back calculation continues the
+/// recursion of the last section from its limited output, and clamping leaves x_k unchanged.
+///
+/// Sources: Åström and Wittenmark (1997) for back calculation; clamping is conditional integration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AntiWindup {
     /// The integral part continues to integrate.

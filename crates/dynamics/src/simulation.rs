@@ -7,7 +7,6 @@
 
 mod carried;
 mod commanded_plant;
-mod interface;
 mod derivatives;
 mod driver;
 mod equilibrium;
@@ -15,6 +14,7 @@ mod explicit;
 mod frozen;
 mod growth;
 mod history;
+mod interface;
 mod kernel;
 mod method;
 mod passage;
@@ -37,16 +37,16 @@ mod trajectory;
 mod vector;
 
 pub use commanded_plant::{CommandedPlant, LoopSignals};
-pub use interface::{
-    Amplification, Attention, Event, GrowthCause, Input, InputSchedule, Observer, Outcome, Sampler,
-    SimulationError, SimulationSettings, Status, StepCounts, UnfollowedCause, UnfollowedKinks,
-};
 pub use derivatives::DIRECTIONS;
 pub use driver::drive;
 pub use equilibrium::{EquilibriumError, equilibrium};
 pub use frozen::{Frozen, FrozenMode, FrozenWatch, SampledLaw};
 pub use growth::Sliding;
 pub use history::WaveHistory;
+pub use interface::{
+    Amplification, Attention, Event, GrowthCause, Input, InputSchedule, Observer, Outcome, Sampler,
+    SimulationError, SimulationSettings, Status, StepCounts, UnfollowedCause, UnfollowedKinks,
+};
 pub use method::Method;
 pub use profile::{Harmonic, Moment, Profile, ProfileError, ProfileNumber, ProfilePiece, schroeder_phases};
 pub use quantities::{SimulationCount, SimulationNumber};

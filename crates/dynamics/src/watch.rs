@@ -37,7 +37,12 @@ pub struct Stopped;
 /// let mut until_half = |progress: Progress| progress.fraction < 0.5;
 /// assert_eq!(sum(&[1.0, 2.0], &mut until_half), Err(Stopped));
 /// ```
-pub fn report_progress(watch: Watch<'_>, stage: &'static str, done: usize, all: usize) -> Result<(), Stopped> {
+pub fn report_progress(
+    watch: Watch<'_>,
+    stage: &'static str,
+    done: usize,
+    all: usize,
+) -> Result<(), Stopped> {
     let fraction = done as f64 / all.max(1) as f64;
     if watch(Progress { stage, fraction }) { Ok(()) } else { Err(Stopped) }
 }

@@ -5,7 +5,6 @@
 //! [[alternative]] -> project -> sizing, design, audit, trial -> the designed loop, simulated -> columns -> dominance
 //! ```
 
-mod prepared;
 mod by_other_means;
 mod cases;
 mod column_key;
@@ -16,10 +15,10 @@ mod front;
 mod hardware;
 mod no_number;
 mod port;
+mod prepared;
 mod recentred;
 
-pub use prepared::{PreparedAlternative, prepared};
-pub use cases::{PreparedCase, JudgedCase, prepared_cases};
+pub use cases::{JudgedCase, PreparedCase, prepared_cases};
 pub use column_key::ColumnKey;
 pub use columns::{AlternativeColumn, AlternativeColumns, ColumnPart};
 pub use comparison::{
@@ -30,6 +29,7 @@ pub use front::{FeasibilityUnknown, Front, FrontColumn, FrontPoint, FrontRequest
 pub use hardware::retracted_length;
 pub use no_number::{LengthUnknown, NoNumber};
 pub use port::IMPEDANCE_AT;
+pub use prepared::{PreparedAlternative, prepared};
 pub use recentred::MovedRange;
 
 use phea_dynamics::watch::{Progress, Watch};
@@ -295,7 +295,11 @@ fn in_impedance_form(project: &Project) -> Project {
 
 type AssembledSetup<'a> = Result<&'a Setup<'a>, ControlError>;
 
-fn designed(source: &dyn Source, setup: AssembledSetup<'_>, watch: Watch<'_>) -> Result<ProjectDesign, DesignError> {
+fn designed(
+    source: &dyn Source,
+    setup: AssembledSetup<'_>,
+    watch: Watch<'_>,
+) -> Result<ProjectDesign, DesignError> {
     design_project(source, setup?, None, watch)
 }
 

@@ -2,7 +2,6 @@
 //! every specification, with the given one for comparison.
 
 mod added_by_rig;
-mod feedback_required;
 mod below;
 mod binding;
 mod by_steps;
@@ -13,6 +12,7 @@ mod driven;
 mod error;
 mod explanation;
 mod factors;
+mod feedback_required;
 mod manual;
 mod problem;
 mod proven;
@@ -183,7 +183,8 @@ impl ProjectDesign {
         };
         let designed = AuditedController::new(law, problem, view)?;
         Ok(ProjectDesign {
-            tolerates_its_delay: requested.tolerates_its_delay(designed.figures.delay_margin_s.unwrap_or(0.0)),
+            tolerates_its_delay: requested
+                .tolerates_its_delay(designed.figures.delay_margin_s.unwrap_or(0.0)),
             minimum_delay_margin_s: requested.minimum_delay_margin_s,
             designed,
             design,
@@ -328,8 +329,10 @@ pub fn design_and_repair(
         return repair::repaired((source, setup), run, project_design, &mut within(watch, [0.6, 1.0]));
     };
     let damped = Setup::new(&project)?;
-    let (run, project_design) = designed(source, [setup, &damped], seed, &mut within(&mut *watch, [0.0, 0.6]))?;
-    let project_design = repair::repaired((source, &damped), run, project_design, &mut within(watch, [0.6, 1.0]))?;
+    let (run, project_design) =
+        designed(source, [setup, &damped], seed, &mut within(&mut *watch, [0.0, 0.6]))?;
+    let project_design =
+        repair::repaired((source, &damped), run, project_design, &mut within(watch, [0.6, 1.0]))?;
     Ok(project_design.with_pressure_feedback(Some(found)))
 }
 
@@ -398,8 +401,9 @@ fn designed(
             let continuous = match is_sampled {
                 true => unless_stopped(&mut unfinished, DesignPart::WithoutSamples, || {
                     let watch = &mut within(watch, [0.9, 1.0]);
-                    twin.and_then(|twin| twin.of(&project_design.design))
-                        .unwrap_or_else(|| continuous_as_sampled((source, setup), &run.problem, &project_design, watch))
+                    twin.and_then(|twin| twin.of(&project_design.design)).unwrap_or_else(|| {
+                        continuous_as_sampled((source, setup), &run.problem, &project_design, watch)
+                    })
                 })?,
                 false => None,
             };
@@ -471,7 +475,12 @@ fn continuous_as_sampled(
     let problem = DesignProblem { timing: at_once, family, ..sampled.clone() };
     let stage = "designing without samples";
     // the structure is unchanged, so that only sampling makes the difference
-    let law = reshaped(&problem, &project_design.options, &project_design.design, &mut part(&mut *watch, stage, [0.0, 1.0]))?;
+    let law = reshaped(
+        &problem,
+        &project_design.options,
+        &project_design.design,
+        &mut part(&mut *watch, stage, [0.0, 1.0]),
+    )?;
     let Some(law) = law else { return Ok(None) };
     let controller = Controller { timing, ..law };
     let compensation = setup.compensation(&controller)?;

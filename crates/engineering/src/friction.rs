@@ -11,6 +11,7 @@
 //! is linear between knots, a shaking force is a sum of sines. One set of coefficients explains
 //! all.
 
+mod curves;
 mod directions;
 mod estimates;
 mod guess;
@@ -22,11 +23,11 @@ mod profile;
 mod reading;
 mod reasons;
 mod shaking;
-mod curves;
 mod sign_error;
 mod signs;
 mod varying;
 
+pub use curves::{PressedCurve, SteadyPoint};
 pub use directions::{DirectionEvidence, DirectionModel, ExplainedByDirections};
 pub use estimates::OpenCoefficient;
 pub use misfit::{FrictionMisfit, FrictionSignal};
@@ -35,7 +36,6 @@ pub use pressing::PressedRows;
 pub use reading::{FrictionRecording, KnownCylinder, friction_recordings, recorded_runs};
 pub use reasons::{NotIdentifiableFriction, ROWS_OF_RINGING};
 pub use shaking::ShakenRows;
-pub use curves::{PressedCurve, SteadyPoint};
 pub use varying::VaryingVelocity;
 
 use phea_dynamics::least_squares::{Ending, Minimum};

@@ -9,9 +9,8 @@ use crate::design::design_problem;
 pub use crate::impossible_steps::{ImpossibleStep, ImpossibleSteps, SlowStep, StillTimes};
 use crate::impossible_steps::{few_plants, impossible_steps};
 use crate::project::Project;
-use crate::robust::{RobustProblem, robust_problem};
+use crate::robust::RobustProblem;
 use crate::setup::Setup;
-use crate::source::Source;
 use crate::specification::{SpecificationError, closed_loops, crossed_limits};
 
 /// A requirement that no linear loop can satisfy.
@@ -25,39 +24,26 @@ pub enum Impossibility {
     Plants(String, Finding),
 }
 
-/// The requirements of a project that no linear loop can satisfy.
-#[derive(Clone, Debug)]
-pub struct Impossibilities {
-    /// The requirements.
-    pub found: Vec<Impossibility>,
-    /// Robust problem; `None` if there is none.
-    pub problem: Option<RobustProblem>,
-}
-
 /// Requirements that no linear loop can satisfy: limits that cross; requirements that a few plants
 /// forbid (the nominal one, some corners, some members), whatever the controller; times shorter
 /// than a delay; and required steps that the rig does not reach. Each holds for every controller
-/// and prefilter; an empty list does not mean that a controller exists. Without a robust problem,
-/// only crossed limits are found.
+/// and prefilter; an empty list does not mean that a controller exists. Without specifications or
+/// without a robust problem, only crossed limits are found.
 ///
 /// # Errors
 /// [`SpecificationError`] for a limit that is absent or not a function of frequency.
 pub fn impossibilities(
-    source: &dyn Source,
     setup: &Setup<'_>,
-) -> Result<Impossibilities, SpecificationError> {
+    problem: Option<&RobustProblem>,
+) -> Result<Vec<Impossibility>, SpecificationError> {
     let project = setup.project;
     let crossed = crossed_limits(project)?.into_iter();
     let mut found: Vec<Impossibility> = crossed.map(Impossibility::CrossedLimits).collect();
-    if project.specifications.is_empty() {
-        return Ok(Impossibilities { found, problem: None });
+    if let Some(problem) = problem.filter(|_| !project.specifications.is_empty()) {
+        found.extend(impossible_steps(setup, problem).into_iter().map(Impossibility::Step));
+        found.extend(of_plants(setup, problem, few_plants(&problem.family)));
     }
-    let Ok(problem) = robust_problem(source, setup) else {
-        return Ok(Impossibilities { found, problem: None });
-    };
-    found.extend(impossible_steps(setup, &problem).into_iter().map(Impossibility::Step));
-    found.extend(of_plants(setup, &problem, few_plants(&problem.family)));
-    Ok(Impossibilities { found, problem: Some(problem) })
+    Ok(found)
 }
 
 /// Requirements that a few plants forbid.

@@ -120,7 +120,8 @@ fn required_times(project: &Project) -> Vec<(f64, ReachedBy)> {
     let requirements = time_requirements(project).unwrap_or_default();
     let each = requirements.into_iter().flat_map(|required| {
         let step_limits = required.step_limits;
-        let settles = step_limits.settling_time_s.map(|time_s| portable::ln(100.0 / step_limits.band_percent) / time_s);
+        let settles =
+            step_limits.settling_time_s.map(|time_s| portable::ln(100.0 / step_limits.band_percent) / time_s);
         let rises = step_limits.rise_time_s.map(|time_s| RISE_TIMES_BANDWIDTH / time_s);
         settles
             .into_iter()

@@ -35,7 +35,9 @@ pub use agreement::AgreementBand;
 pub use agreement::{FIRST_ORDER, LUMPED, WITHIN_DB, WITHIN_DEG};
 pub use linkage::{LinkagePlace, LinkagePosition, linkage_places};
 pub use over_force::{StiffnessOverForce, stiffness_over_force};
-pub use port::{ComparedImpedance, RequiredImpedance, HidingMass, REPORTED_AT_RAD_PER_S, WITHIN_PERCENT, hidden_above};
+pub use port::{
+    ComparedImpedance, HidingMass, REPORTED_AT_RAD_PER_S, RequiredImpedance, WITHIN_PERCENT, hidden_above,
+};
 pub use sweep::{
     NoBandwidth, NoSweptModels, POINTS, Sweep, SweepError, SweepPoint, SweepRequest, Swept, sweep,
 };
@@ -207,7 +209,10 @@ pub fn linearize(
         open_loop: open_loop_view(rig, [&port, &plant])?,
         closed_loop_absent: absence(feedback.as_ref(), closed_loop.as_ref()),
         closed_loop,
-        required_impedance: controller.map(|given| port::required_impedance(rig, given, sensor)).transpose()?.flatten(),
+        required_impedance: controller
+            .map(|given| port::required_impedance(rig, given, sensor))
+            .transpose()?
+            .flatten(),
         linkage: linkage_places(rig),
         compliance_hidden_above_rad_per_s,
         hidden_by,

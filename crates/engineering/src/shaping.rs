@@ -2,15 +2,15 @@
 //! one, judged at the design frequencies, and written back into its file.
 
 mod change;
+mod element_request;
 mod piece;
 mod refused;
 mod save;
-mod element_request;
 mod workpiece;
 
 pub use change::{Change, RequestedChange};
-pub use refused::{ChangeProblem, RefusedChange};
 pub use element_request::solved_kinds;
+pub use refused::{ChangeProblem, RefusedChange};
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Compensator;

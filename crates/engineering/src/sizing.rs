@@ -112,8 +112,11 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
     };
     sizing.influences = sizing.best().map(|candidate| sensitivity(problem, candidate)).unwrap_or_default();
     let best = sizing.best().map(|best| (best.branch.stiffness.minimum, best.option.hoses[0].bore));
-    sizing.other_means =
-        problem.other_means.as_ref().zip(best).map(|(requested, (stiffness, bore))| requested.solve(stiffness, bore));
+    sizing.other_means = problem
+        .other_means
+        .as_ref()
+        .zip(best)
+        .map(|(requested, (stiffness, bore))| requested.solve(stiffness, bore));
     sizing
 }
 

@@ -9,7 +9,8 @@ use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::order::sorted_distinct;
 use phea_qft::specification::{
-    ClosedLoop, LimitError, MarginError, Requirement, Specification, TimeDomainError, RequirementCheck, RequirementOutcome,
+    ClosedLoop, LimitError, MarginError, Requirement, RequirementCheck, RequirementOutcome, Specification,
+    TimeDomainError,
 };
 
 pub use self::kind::{closed_loop_key, kind_key};
@@ -156,11 +157,8 @@ pub fn requirements_in_time(project: &Project) -> Result<Vec<CheckedRequirement>
             [("upper", TrackingSide::Upper, &declared.upper), ("lower", TrackingSide::Lower, &declared.lower)]
         {
             if let Some(project::DeclaredLimit::Response(response)) = limit {
-                let (_, check) = limit::of_requirement(response, side).map_err(|reason| SpecificationError {
-                    number,
-                    key,
-                    reason,
-                })?;
+                let (_, check) = limit::of_requirement(response, side)
+                    .map_err(|reason| SpecificationError { number, key, reason })?;
                 checked.push(CheckedRequirement { number, key, check, follows: response.function.is_none() });
             }
         }

@@ -44,7 +44,8 @@ impl EstimatedResponse {
         let (levels, degrees) =
             (decibels(&self.estimate.response), unwrapped_degrees(&self.estimate.response, None));
         let level = |value: f64| 20.0 * log10(value);
-        let in_decibels = self.band(&levels, |fraction| [level((1.0 - fraction).max(LEAST)), level(1.0 + fraction)]);
+        let in_decibels =
+            self.band(&levels, |fraction| [level((1.0 - fraction).max(LEAST)), level(1.0 + fraction)]);
         let in_degrees = self.band(&degrees, |fraction| {
             let edge = asin(fraction.min(1.0)).to_degrees();
             [-edge, edge]

@@ -16,7 +16,7 @@ pub(crate) mod polynomial;
 
 pub use decomposed::{Decomposition, MechanicalDamping, decompose, decomposed_model};
 pub use difference::{ResponseDifference, response_difference};
-pub use dominance::{ModeContribution, ContributionAbsence, dominance};
+pub use dominance::{ContributionAbsence, ModeContribution, dominance};
 pub use first_order::{
     RequiredStiffness, closed_loop_steady_state_gain, closed_loop_time_constant, first_order_model,
     proportional_gain, required_stiffness, rigid_limit_gain,

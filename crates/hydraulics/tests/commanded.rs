@@ -4,7 +4,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::scalar::{Dual, Scalar};
 use phea_dynamics::simulation::{DIRECTIONS, Plant, System, small_signal};
 use phea_hydraulics::accumulator::{

@@ -6,7 +6,7 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::Polynomial;
 use phea_dynamics::portable::{magnitude, pow};
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::{CrossPort, DynamicFeedback, Restrictor};

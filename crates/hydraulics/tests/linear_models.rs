@@ -6,9 +6,10 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
 use phea_hydraulics::linear::{
-    LinearParameters, MechanicalDamping, RequiredStiffness, ContributionAbsence, closed_loop_steady_state_gain,
-    closed_loop_time_constant, decompose, decomposed_model, dominance, first_order_model, linear_model,
-    linear_model_coefficients, proportional_gain, required_stiffness, response_difference, rigid_limit_gain,
+    ContributionAbsence, LinearParameters, MechanicalDamping, RequiredStiffness,
+    closed_loop_steady_state_gain, closed_loop_time_constant, decompose, decomposed_model, dominance,
+    first_order_model, linear_model, linear_model_coefficients, proportional_gain, required_stiffness,
+    response_difference, rigid_limit_gain,
 };
 use phea_hydraulics::reference_rig::{USEFUL_AREA, nominal_plant};
 use phea_hydraulics::stiffness::{hose_length_uniform, stiffness_from_hose_length};

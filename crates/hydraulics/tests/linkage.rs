@@ -4,7 +4,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{cos, pow, sin};
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::scalar::{Interval, Parameters};
 use phea_dynamics::simulation::{Plant, small_signal};
 use phea_hydraulics::actuator::{Actuator, Components};

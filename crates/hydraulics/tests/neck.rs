@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{exp, pow, sin};
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::accumulator::{
     Accumulator, Bladder, ChamberGas, GasBranch, GasContent, GasPassage, Neck, NeckImpedance, SealedGas,

@@ -5,7 +5,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::simulation::small_signal;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};

@@ -8,7 +8,7 @@ use phea_dynamics::analytic::Disc;
 use phea_dynamics::controller::RateFilter;
 use phea_dynamics::linear::Polynomial;
 use phea_dynamics::portable::{exp_complex, pow};
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::simulation::small_signal;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
@@ -23,7 +23,7 @@ use phea_hydraulics::line::{
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Chambers, InitialCondition, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Condition, operating_point};
-use phea_hydraulics::plant::{LineChambers, ChamberDynamics, LinearLoad, LinearPlant, PlantInMotion};
+use phea_hydraulics::plant::{ChamberDynamics, LineChambers, LinearLoad, LinearPlant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leaking, pipe_line};
 use phea_hydraulics::stiffness::StiffnessModel;
 

@@ -8,7 +8,7 @@ use phea_dynamics::analytic::Disc;
 use phea_dynamics::controller::{InnerFeedback, VirtualImpedance};
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::{exp_complex, pow};
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_hydraulics::linear::LinearParameters;

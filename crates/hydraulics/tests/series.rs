@@ -6,7 +6,7 @@
 use num_complex::Complex64;
 use phea_dynamics::controller::RateFilter;
 use phea_dynamics::portable::{pow, sin};
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::scalar::{Dual, Interval, Parameters};
 use phea_dynamics::simulation::{DIRECTIONS, Plant};
 use phea_hydraulics::accumulator::Accumulator;

@@ -5,7 +5,7 @@
 use num_complex::Complex64;
 use phea_dynamics::controller::InnerFeedback;
 use phea_dynamics::portable::pow;
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_hydraulics::accumulator::{
     Accumulator, AdjustedGas, ChamberGas, GasContent, GasPassage, GasValve, Neck, RelaxingGas, SealedGas,
 };

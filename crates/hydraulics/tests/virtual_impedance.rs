@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use phea_dynamics::analytic::Disc;
 use phea_dynamics::controller::VirtualImpedance;
 use phea_dynamics::portable::{exp_complex, pow};
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_hydraulics::plant::{
     LinearElement, LinearPlant, LinearSeries, LinearSpring, PlantInMotion, SeriesOutput,
@@ -111,7 +111,8 @@ fn enclosure_and_roll_off_hold() {
     let mut bounded = 0;
     for number in 0..36 {
         let rig = drawn(number);
-        let moving = PlantInMotion::new(&rig.plant, &rig.behind).with_virtual_impedance(Some(impedance(number)));
+        let moving =
+            PlantInMotion::new(&rig.plant, &rig.behind).with_virtual_impedance(Some(impedance(number)));
         for from in [1.0, 30.0, 400.0, 3e3, 3e4] {
             let ends = [from, 1.02 * from];
             let disc: Disc = moving.enclosure(ends);

@@ -87,8 +87,9 @@ pub fn at_rest(
     kept.extend(machine.shut_gas(held_inputs.setting_change));
     let mut inputs = vec![held_inputs.reference_n, ground, 0.0];
     inputs.extend(machine.has_external_force().then_some(held_inputs.external_n));
-    inputs
-        .extend(machine.has_moving_setting().then_some([held_inputs.setting_change, 0.0]).into_iter().flatten());
+    inputs.extend(
+        machine.has_moving_setting().then_some([held_inputs.setting_change, 0.0]).into_iter().flatten(),
+    );
     Ok(match control {
         Control::Open(commanded) | Control::Continuous(commanded) => {
             if let Control::Open(_) = control {

@@ -61,9 +61,11 @@ fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
 fn one_capacity_is_the_lumped_line() {
     let (actuator, member) = (actuator(), StiffeningMember::Nominal);
     let compliance = hose_line().compliance(1.45e9, member);
-    let [lumped, capacity] =
-        [Chambers::new(&actuator, member), Chambers::with_line_compliance(&actuator, member, [compliance; 2])]
-            .map(|chambers| chambers.compliance(0.31, [41e5, 22e5]));
+    let [lumped, capacity] = [
+        Chambers::new(&actuator, member),
+        Chambers::with_line_compliance(&actuator, member, [compliance; 2]),
+    ]
+    .map(|chambers| chambers.compliance(0.31, [41e5, 22e5]));
     assert!(lumped.iter().zip(&capacity).all(|(a, b)| (a - b).abs() <= 1e-13 * a), "{lumped:?} {capacity:?}");
 }
 

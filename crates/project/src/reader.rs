@@ -379,7 +379,9 @@ fn unknown_key(entry: &Entry, known: &[KeyEntry], frame: &mut Frame<'_>) -> RawF
         }
         (_, [only]) => found.help(format!("it belongs to {only}")),
         (Some(name), _) => found.help(format!("did you mean `{name}`?")),
-        (None, _) if frame.requested.len() <= 16 => found.help(format!("known here: {}", frame.requested.join(", "))),
+        (None, _) if frame.requested.len() <= 16 => {
+            found.help(format!("known here: {}", frame.requested.join(", ")))
+        }
         (None, _) => found,
     }
 }

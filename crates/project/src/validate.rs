@@ -18,10 +18,10 @@ mod order;
 mod plausible;
 mod precharge;
 mod pressure_feedback;
+mod requirements;
 mod rig;
 mod series;
 mod specification;
-mod requirements;
 
 use super::catalogue_entry::Catalogue;
 use super::reader::Reader;

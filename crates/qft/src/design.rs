@@ -26,8 +26,8 @@ mod queue;
 mod reshaped;
 mod result;
 mod run;
-mod stabilising;
 mod searched;
+mod stabilising;
 
 pub use attempt::LoopDesignError;
 pub use binding::BINDING_DB;
@@ -43,4 +43,4 @@ pub use phea_dynamics::controller::{NamedStructure, Objective};
 pub use reshaped::reshaped;
 pub use result::{Design, DesignRound, DesignStatus, Relaxation, Starts};
 pub use run::{design, design_again};
-pub use searched::{StructureEnding, SearchedStructure};
+pub use searched::{SearchedStructure, StructureEnding};

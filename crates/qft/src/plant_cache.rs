@@ -184,7 +184,7 @@ mod tests {
         PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
     };
 
-    use super::{Compensation, PlantCache, Member};
+    use super::{Compensation, Member, PlantCache};
 
     fn found(plants: &PlantCache, timing: Timing, gain: f64) -> Member {
         let parameter = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 0.5, maximum: 2.0 };

@@ -21,9 +21,9 @@ pub use margin::{
 };
 pub use phea_dynamics::closed_loop::{ClosedLoop, LoopResponse};
 pub use time_domain::{
-    ExtraRoot, LimitOrder, LowerStepRequirement, Reached, TimeDomainError, TrackingLimit, TrackingSpread, Translation,
-    UpperStepRequirement, RequirementCheck, RequirementOutcome, RequiredResponse, check_lower, check_upper, tracking_lower, tracking_spread,
-    tracking_upper,
+    ExtraRoot, LimitOrder, LowerStepRequirement, Reached, RequiredResponse, RequirementCheck,
+    RequirementOutcome, TimeDomainError, TrackingLimit, TrackingSpread, Translation, UpperStepRequirement,
+    check_lower, check_upper, tracking_lower, tracking_spread, tracking_upper,
 };
 
 /// Closed loop that is limited, and its limits.

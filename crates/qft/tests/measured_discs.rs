@@ -8,7 +8,7 @@ use phea_dynamics::controller::{Compensator, Controller, Element};
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::{argument, exp, log10, magnitude, pow};
-use phea_dynamics::random::{normal, uniform, stream};
+use phea_dynamics::random::{normal, stream, uniform};
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;

@@ -4,7 +4,7 @@
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::{Polynomial, TransferFunction};
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
@@ -13,7 +13,7 @@ use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
 use phea_qft::proof::{
-    Certificate, Claim, ControlLaw, FrequencyPanel, Late, LimitOf, Proof, ProofOptions, ClaimStatus, check,
+    Certificate, Claim, ClaimStatus, ControlLaw, FrequencyPanel, Late, LimitOf, Proof, ProofOptions, check,
     prove,
 };
 use phea_qft::specification::{ClosedLoop, Limit, LimitTable, Requirement, Specification};

@@ -2,7 +2,7 @@
 
 use phea_dynamics::watch::unwatched;
 use phea_qft::family::Family;
-use phea_qft::proof::{NotProven, ProofOptions, ClaimStatus, check, prove};
+use phea_qft::proof::{ClaimStatus, NotProven, ProofOptions, check, prove};
 
 use crate::proof::{blind, problem, random_problem};
 

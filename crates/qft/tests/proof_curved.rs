@@ -5,7 +5,7 @@
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::expression::Recorded;
 use phea_dynamics::linear::TransferFunction;
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
@@ -14,7 +14,7 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
-use phea_qft::proof::{Certificate, ParameterSegment, Proof, ProofOptions, ClaimStatus, check, prove};
+use phea_qft::proof::{Certificate, ClaimStatus, ParameterSegment, Proof, ProofOptions, check, prove};
 use phea_qft::specification::{ClosedLoop, Limit, LoopResponse, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 

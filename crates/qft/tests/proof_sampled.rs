@@ -11,7 +11,7 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
-use phea_qft::proof::{Certificate, Claim, ControlLaw, Proof, ProofOptions, ClaimStatus, check, prove};
+use phea_qft::proof::{Certificate, Claim, ClaimStatus, ControlLaw, Proof, ProofOptions, check, prove};
 use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 

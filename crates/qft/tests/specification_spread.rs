@@ -99,7 +99,10 @@ fn crossing_limits_are_reported_with_place_and_distance() {
     assert!((spread.at_end_db + 20.0 * log10(9.0)).abs() < 1e-12);
     assert_eq!(spread.grows_from_rad_per_s, None);
     // before they cross, the limits are consistent
-    assert!(matches!(tracking_spread(&lower, &upper, [0.0, 12.0]).unwrap().order, LimitOrder::Satisfied { .. }));
+    assert!(matches!(
+        tracking_spread(&lower, &upper, [0.0, 12.0]).unwrap().order,
+        LimitOrder::Satisfied { .. }
+    ));
     // crossed from the first frequency on
     let swapped = tracking_spread(&upper, &lower, [1.0, 10.0]).unwrap().order;
     assert!(matches!(swapped, LimitOrder::Crossed { from_rad_per_s: 1.0, .. }), "{swapped:?}");

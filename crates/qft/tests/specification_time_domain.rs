@@ -8,8 +8,8 @@ use phea_dynamics::time_response::{
     SecondOrder, Settling, SettlingRule, StepBaseline, step_metrics, step_response, uniform_times,
 };
 use phea_qft::specification::{
-    ExtraRoot, LowerStepRequirement, TimeDomainError, Translation, UpperStepRequirement, RequirementCheck, RequirementOutcome, check_lower,
-    check_upper, tracking_lower, tracking_upper,
+    ExtraRoot, LowerStepRequirement, RequirementCheck, RequirementOutcome, TimeDomainError, Translation,
+    UpperStepRequirement, check_lower, check_upper, tracking_lower, tracking_upper,
 };
 
 const UPPER: UpperStepRequirement =
@@ -142,7 +142,8 @@ fn exact_limits_meet_any_requirement_for_every_extra_root() {
 /// then settles at exactly the required time, and the faster side of the jump is used.
 #[test]
 fn at_a_jump_of_the_settling_time_the_requirement_is_met_early() {
-    let required = UpperStepRequirement { overshoot_percent: 99.9, settling_time_s: 0.1, settling_band_percent: 1.0 };
+    let required =
+        UpperStepRequirement { overshoot_percent: 99.9, settling_time_s: 0.1, settling_band_percent: 1.0 };
     let zero = ExtraRoot::At { rad_per_s: 30.0 };
     let limit = tracking_upper(&required, zero, Translation::Exact).unwrap();
     assert_eq!(limit.check.outcome(), RequirementOutcome::Met);
@@ -207,7 +208,10 @@ fn rules_of_thumb_follow_the_thesis_within_their_band() {
     assert!(matches!(upper.check.outcome(), RequirementOutcome::Missed { settling_excess_s: 0.0, .. }));
     // critical damping settles later than an envelope of the same sigma
     let lower = tracking_lower(&LOWER, ExtraRoot::None, rule).unwrap();
-    assert!(matches!(lower.check.outcome(), RequirementOutcome::Missed { overshoot_excess_percent: 0.0, .. }));
+    assert!(matches!(
+        lower.check.outcome(),
+        RequirementOutcome::Missed { overshoot_excess_percent: 0.0, .. }
+    ));
     let two = Translation::Rule(SettlingRule::TwoPercent);
     assert_eq!(
         tracking_lower(&LOWER, ExtraRoot::None, two),
@@ -244,8 +248,11 @@ fn the_check_agrees_with_dense_samples_of_any_response() {
             (0..(4.0 * numbers.next()) as usize).map(|_| c(-numbers.between(5.0, 60.0), 0.0)).collect();
         let unscaled = factored(1.0, &zeros, &poles);
         let function = factored(1.0 / unscaled.dc_gain(), &zeros, &poles).with_dead_time(0.05).unwrap();
-        let required =
-            UpperStepRequirement { overshoot_percent: 10.0, settling_time_s: 1.0, settling_band_percent: 2.0 };
+        let required = UpperStepRequirement {
+            overshoot_percent: 10.0,
+            settling_time_s: 1.0,
+            settling_band_percent: 2.0,
+        };
         let check = check_upper(&function, &required).unwrap();
         let times = uniform_times(20.0, 80_001).unwrap();
         let values = step_response(&function, &times).unwrap();
@@ -263,7 +270,8 @@ fn modes_far_apart_and_light_damping_are_followed_to_the_end() {
     // a lag of ten seconds in series with one of ten microseconds
     let spread = factored(0.1 * 1e5, &[], &[c(-0.1, 0.0), c(-1e5, 0.0)]);
     let check =
-        check_lower(&spread, &LowerStepRequirement { settling_time_s: 50.0, settling_band_percent: 1.0 }).unwrap();
+        check_lower(&spread, &LowerStepRequirement { settling_time_s: 50.0, settling_band_percent: 1.0 })
+            .unwrap();
     assert!(close(settling(&check), 10.0 * ln(100.0), 1e-3));
     assert_eq!(check.outcome(), RequirementOutcome::Met);
     let ringing = SecondOrder::new(10.0, 0.004).unwrap();

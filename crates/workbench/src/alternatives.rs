@@ -11,5 +11,5 @@ mod words;
 pub use phea_engineering::alternatives::*;
 
 pub(crate) use answer::{AlternativesAnswer, body};
-pub(crate) use document::{document, output, outside_words, first_warnings};
+pub(crate) use document::{document, first_warnings, output, outside_words};
 pub(crate) use files::{figures, files};

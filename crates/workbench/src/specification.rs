@@ -7,7 +7,7 @@ mod requirement;
 
 pub use phea_engineering::specification::*;
 
-pub(crate) use answer::{RequiredStepAnswer, CheckedRequirementAnswer, document, requirement_answer};
+pub(crate) use answer::{CheckedRequirementAnswer, RequiredStepAnswer, document, requirement_answer};
 pub(crate) use late::late;
 pub(crate) use names::{name_words, numbered, stated, subject_words};
 pub use requirement::requirement_sentence;

@@ -178,7 +178,10 @@ fn a_load_case_equals_every_alternative_with_set() {
         format!("{LOOP}\n[[load_case]]\nname = \"slow\"\nset = {{ \"plant.denominator\" = \"s + 0.5\" }}\n");
     let found = answer(&text, &[], &[], &alternatives_request(true));
     let json = json_of(&found);
-    assert_eq!(json["alternatives"], json_of(&answer(LOOP, &[], &[], &alternatives_request(false)))["alternatives"]);
+    assert_eq!(
+        json["alternatives"],
+        json_of(&answer(LOOP, &[], &[], &alternatives_request(false)))["alternatives"]
+    );
     let case = &json["load_cases"][0];
     assert_eq!(
         (&case["name"], &case["settings"][0]),
@@ -315,8 +318,7 @@ fn a_sized_alternative_has_the_hose_of_size() {
         "{}\n[[alternative]]\nname = \"p\"\nsize = true\nset = {{ \"title\" = \"x\" }}\n",
         crate::run_command::PIPE
     );
-    let refused =
-        prepared_alternatives(&source(&pipe), &load(&pipe, &[], &[]), &[]).unwrap_err().to_string();
+    let refused = prepared_alternatives(&source(&pipe), &load(&pipe, &[], &[]), &[]).unwrap_err().to_string();
     assert_eq!(refused, "alternative `p`: `size` finds the hoses of both sides: its [line] must have them");
 }
 
@@ -374,8 +376,15 @@ fn each_written_project_is_the_one_that_was_driven() {
 #[test]
 fn a_stop_returns_the_finished_alternatives() {
     let mut watch = |progress: phea_workbench::command::Progress| progress.fraction < 0.34;
-    let stopped =
-        answer_into(&source(LOOP), &load(LOOP, &[], &[]), &[], &alternatives_request(false), None, &mut watch).unwrap();
+    let stopped = answer_into(
+        &source(LOOP),
+        &load(LOOP, &[], &[]),
+        &[],
+        &alternatives_request(false),
+        None,
+        &mut watch,
+    )
+    .unwrap();
     let json = json_of(&stopped);
     assert_eq!(json["alternatives"].as_array().unwrap().len(), 1);
     assert_eq!(json["not_reached"], serde_json::json!(["faster", "late"]));

@@ -172,7 +172,7 @@ fn allowed_errors_of_the_converters_are_specifications() {
         last = gain;
         if allowed == "0.055" {
             let binds =
-                |row: &serde_json::Value| row["specification"] == 2 && row["kind"] == "control_effort";
+                |row: &serde_json::Value| row["specification"] == 3 && row["kind"] == "control_effort";
             assert!(design["binding"].as_array().unwrap().iter().any(binds), "{}", design["binding"]);
             assert!(design["rounding"]["effects"][2]["rms"].as_f64().unwrap() < 0.055);
         }

@@ -216,7 +216,8 @@ fn check_reports_a_stated_value_that_contradicts_the_derived_one() {
 /// % of the reference.
 #[test]
 fn check_compares_tracking_limits_with_their_requirements() {
-    let requirements = |settings: &[&str]| json(HOSE, settings, &[], &Request::Check)["requirements_in_time"].clone();
+    let requirements =
+        |settings: &[&str]| json(HOSE, settings, &[], &Request::Check)["requirements_in_time"].clone();
     let stated = requirements(&[]);
     let [upper, lower] = [&stated[0], &stated[1]];
     for (row, key, overshoot, time, reached) in

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_hydraulics::signal::Signal;
 use phea_qft::family::Family;

@@ -9,7 +9,7 @@ use phea_dynamics::controller::Controller;
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::{exp, magnitude, pow};
-use phea_dynamics::random::{normal, uniform, stream};
+use phea_dynamics::random::{normal, stream, uniform};
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;

@@ -30,7 +30,8 @@ fn samples(settings: &[&str]) -> (Vec<f64>, Vec<f64>) {
         .unwrap()
         .remove(0);
     assert_eq!(run.stopped(), None);
-    let at_samples = |values: &[f64]| values.iter().copied().step_by(run.samples_per_row).collect::<Vec<f64>>();
+    let at_samples =
+        |values: &[f64]| values.iter().copied().step_by(run.samples_per_row).collect::<Vec<f64>>();
     let [commands, forces] =
         [&run.record.signal(Signal::Control), &run.record.signal(Signal::Force)].map(|one| at_samples(one));
     assert_eq!(commands.len(), 20_001);

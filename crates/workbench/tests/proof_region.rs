@@ -9,7 +9,7 @@ use phea_dynamics::portable::{log10, magnitude, pow};
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::family::Family;
-use phea_qft::proof::{Certificate, Claim, ProofOptions, ClaimStatus, check, differences, prove};
+use phea_qft::proof::{Certificate, Claim, ClaimStatus, ProofOptions, check, differences, prove};
 use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 use phea_workbench::project;

@@ -6,7 +6,7 @@
 #![allow(clippy::print_stdout, reason = "how many regions were judged is worth reading")]
 
 use crate::run_command::HOSE;
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::family::{Extent, Family, UncertainFamily};
@@ -316,8 +316,8 @@ fn compared(found: &Audit, sampled: &Audit) -> Vec<String> {
     faults
 }
 
-/// The table of the part that switches, and the keys of the supply; `fraction` places the switch, for
-/// this supply pressure in Pa and flow in m3/s.
+/// The table of the part that switches, and the keys of the supply; `fraction` places the switch,
+/// for this supply pressure in Pa and flow in m3/s.
 fn chosen(choosing: Choosing, fraction: f64, supply: f64, flow: f64) -> [String; 2] {
     let constant = "model = \"constant\"\n".to_string();
     match choosing {

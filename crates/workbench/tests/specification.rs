@@ -9,10 +9,12 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
-use phea_qft::specification::{Limit, LoopResponse, Specification, RequirementOutcome};
+use phea_qft::specification::{Limit, LoopResponse, RequirementOutcome, Specification};
 use phea_workbench::project::{self, Project};
 use phea_workbench::source::Memory;
-use phea_workbench::specification::{SpecificationError, specifications, requirement_sentence, requirements_in_time};
+use phea_workbench::specification::{
+    SpecificationError, requirement_sentence, requirements_in_time, specifications,
+};
 
 fn loaded(requirements_in_time: &str) -> Project {
     let text = format!(

@@ -8,12 +8,12 @@ pub use queued::drive;
 
 use super::Lane;
 use super::carried::CarriedErrors;
-use super::interface::{
-    Amplification, Attention, Event, Observer, Outcome, SimulationError, SimulationSettings, Status,
-};
 use super::frozen::{Frozen, FrozenWatch};
 use super::growth::GrowthWatch;
 use super::history::NODES;
+use super::interface::{
+    Amplification, Attention, Event, Observer, Outcome, SimulationError, SimulationSettings, Status,
+};
 use super::kernel::Kernel;
 use super::method::{Extension, StepInputs, Stepper};
 use super::passage::Passage;

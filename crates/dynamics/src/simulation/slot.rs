@@ -39,7 +39,11 @@ impl<O: Observer> Slot<'_, O> {
     }
 
     /// True if the observer requires the step more accurately.
-    pub(super) fn needs_accurate_solution(&self, wanted: &[Extension<f64>], quartics: &mut Vec<Quartic>) -> bool {
+    pub(super) fn needs_accurate_solution(
+        &self,
+        wanted: &[Extension<f64>],
+        quartics: &mut Vec<Quartic>,
+    ) -> bool {
         quartics.clear();
         quartics.extend(wanted.iter().map(Quartic::of));
         self.observer.needs_accurate_solution(&Stretch { passage: &self.passage, states: quartics })

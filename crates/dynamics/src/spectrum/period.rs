@@ -40,7 +40,8 @@ pub fn period(signal: &[f64]) -> Option<usize> {
     let enough = ALMOST_BEST * least + ROUNDING;
     let begins = later().find(|(_, fraction)| *fraction <= enough)?.0;
     // the best of the shifts next to each other
-    let near = later().skip_while(|(shift, _)| *shift < begins).take_while(|(_, fraction)| *fraction <= enough);
+    let near =
+        later().skip_while(|(shift, _)| *shift < begins).take_while(|(_, fraction)| *fraction <= enough);
     near.min_by(|(_, one), (_, other)| one.total_cmp(other)).map(|(shift, _)| shift)
 }
 

@@ -316,12 +316,7 @@ impl<'a, E> Queue<'a, E> for Ends<'a> {
 
     fn next(&mut self, _: &mut E, _: usize) -> Option<Task<'a, Notes>> {
         let schedule = self.0.pop()?;
-        Some(Task {
-            start: vec![0.0],
-            schedule,
-            sampler: None,
-            observer: Notes(Seen::default(), self.2),
-        })
+        Some(Task { start: vec![0.0], schedule, sampler: None, observer: Notes(Seen::default(), self.2) })
     }
     fn done(&mut self, _: usize, outcome: Outcome, _: Notes) {
         self.1.push(outcome.status);

@@ -1,7 +1,7 @@
 //! An alternative whose gas, spring, pipe or valve between the chambers is sized for the stiffness
 //! of the hose that `[sizing]` finds for the project as declared.
 
-use super::{PreparedAlternative, PrepareError};
+use super::{PrepareError, PreparedAlternative};
 use crate::catalogue::Catalogue;
 use crate::project::{Component, CrossPortKind, DeclaredActuator};
 use crate::setup::Setup;

@@ -3,7 +3,7 @@
 use phea_dynamics::watch::{Progress, Watch};
 
 use super::prepared::prepared;
-use super::{AlternativesError, PreparedAlternative, JudgedAlternative, Judging};
+use super::{AlternativesError, JudgedAlternative, Judging, PreparedAlternative};
 use crate::catalogue::Catalogue;
 use crate::parts::PartsCounted;
 use crate::project::{Loaded, read_load_case};

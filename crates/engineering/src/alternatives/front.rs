@@ -4,7 +4,7 @@ use phea_dynamics::watch::{Progress, Watch};
 
 use super::prepared::ReadingAgain;
 use super::{AlternativesError, JudgeError, NoNumber};
-use super::{PreparedAlternative, ColumnKey, ColumnSense, JudgedAlternative, Judging, dominates};
+use super::{ColumnKey, ColumnSense, JudgedAlternative, Judging, PreparedAlternative, dominates};
 use crate::design::DesignVerdict;
 use crate::linearize::{SweepRequest, points, range, values};
 use crate::option::OptionError;
@@ -179,8 +179,16 @@ pub(super) fn plan(request: &FrontRequest, motions: Motions) -> Result<FrontPlan
     let requested = range(&request.sweep.range, motions)?;
     let count = points(request.sweep.points.or(Some(POINTS)))?;
     let values = values(requested.ends, count, requested.by_ratio());
-    let unit = quantity::fitting(requested.ends[0].abs().max(requested.ends[1].abs()), requested.key.dimension);
-    Ok(FrontPlan { motion: motions.rig, columns, path: requested.path, unit, si: requested.key.dimension.si, values })
+    let unit =
+        quantity::fitting(requested.ends[0].abs().max(requested.ends[1].abs()), requested.key.dimension);
+    Ok(FrontPlan {
+        motion: motions.rig,
+        columns,
+        path: requested.path,
+        unit,
+        si: requested.key.dimension.si,
+        values,
+    })
 }
 
 /// Column by its name in a rig of this motion, or the nearest spelling.
@@ -223,8 +231,9 @@ pub(super) fn swept(
     let (mut not_reached, mut done) = (0, 0.0);
     for one in all {
         for &value in &plan.values {
-            let mut watched =
-                |progress: Progress| watch(Progress { fraction: (done + progress.fraction) / count, ..progress });
+            let mut watched = |progress: Progress| {
+                watch(Progress { fraction: (done + progress.fraction) / count, ..progress })
+            };
             let point = match continues && not_reached == 0 {
                 true => point(judging, again, (one, plan), value, &mut watched),
                 false => None,

@@ -29,11 +29,17 @@ impl JudgedAlternative {
             let reason = || NoNumber::NoClosedLoop(found.closed_loop_absent);
             found.closed_loop.as_ref().filter(|_| self.deployed.is_ok()).ok_or_else(reason)
         });
-        let required_impedance = linearization.as_ref().ok().and_then(|found| found.required_impedance.as_ref());
+        let required_impedance =
+            linearization.as_ref().ok().and_then(|found| found.required_impedance.as_ref());
         let required_impedance = required_impedance.map(|required_impedance| {
             let s = Complex64::new(0.0, frequency);
             let required_impedance = portable::magnitude(required_impedance.unfiltered().response(s) / s);
-            column(ColumnKey::ImpedanceRequired, fitting(required_impedance, damping), 3, Ok(required_impedance))
+            column(
+                ColumnKey::ImpedanceRequired,
+                fitting(required_impedance, damping),
+                3,
+                Ok(required_impedance),
+            )
         });
         let [open, closed] = [open, closed]
             .map(|view| view.map(|view| portable::magnitude(view.impedance.at_frequency(frequency))));

@@ -3,7 +3,7 @@
 
 use phea_hydraulics::line::StiffeningMember;
 
-use super::{PreparedAlternative, PrepareError};
+use super::{PrepareError, PreparedAlternative};
 use crate::linearize::stroke_stiffness;
 use crate::project::Uncertain;
 use crate::rig::Rig;

@@ -12,7 +12,7 @@ use phea_qft::verification::{Audit, PlantPoint, Verdict};
 use super::margins::{corners, spread, worst_plants};
 use crate::linear_step::{KnownResponses, StepResponse, StepSignal, linear_step_knowing};
 use crate::robust::RobustProblem;
-use crate::simulate::{ReachedStep, TimeRequirement, StepLimits};
+use crate::simulate::{ReachedStep, StepLimits, TimeRequirement};
 
 /// Finding for the steps of the plants that were visited.
 #[derive(Clone, Debug, PartialEq)]

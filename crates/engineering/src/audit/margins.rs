@@ -277,7 +277,9 @@ impl MarginSearch<'_> {
         for _ in 0..HALVINGS {
             for index in 0..3 {
                 for coordinate in 0..family.coordinates().len() {
-                    [fraction, -fraction].into_iter().for_each(|step| self.beside(family, index, coordinate, step));
+                    [fraction, -fraction]
+                        .into_iter()
+                        .for_each(|step| self.beside(family, index, coordinate, step));
                 }
             }
             fraction *= 0.5;

@@ -1,7 +1,7 @@
 //! Proof or refutation of the findings of an audit; the verdict is then based on the proof.
 
 use phea_dynamics::watch::{Stopped, Watch};
-use phea_qft::proof::{NotProven, Proof, ProofOptions, ClaimStatus, prove};
+use phea_qft::proof::{ClaimStatus, NotProven, Proof, ProofOptions, prove};
 use phea_qft::verification::{Evidence, Verdict};
 
 use super::{ProjectAudit, audit_request};

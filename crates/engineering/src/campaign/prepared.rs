@@ -18,7 +18,8 @@ use crate::setup::Setup;
 use crate::simulate::{
     COMMAND_LIMIT, ControlledMachine, Divergence, ERRORS_AMPLIFIED, Follower, LineLimits, LineWatch,
     Occurrence, PassAgreement, PassPlan, PassResult, PreparedScenario, REPEATED, Repetition, SimulateError,
-    StoppedRun, amplification, prepared_scenario_of, machine_of, moved, occurrences, outside_model_s, run_status,
+    StoppedRun, amplification, machine_of, moved, occurrences, outside_model_s, prepared_scenario_of,
+    run_status,
 };
 
 /// A run that is ready to be simulated.
@@ -98,7 +99,11 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         draw,
         lumps,
         bench,
-        schedule: InputSchedule { duration_s: scenario.duration, output_step_s: scenario.output_step, inputs },
+        schedule: InputSchedule {
+            duration_s: scenario.duration,
+            output_step_s: scenario.output_step,
+            inputs,
+        },
         scenario: schedule,
         log: RefCell::default(),
     })
@@ -283,8 +288,9 @@ impl Seen<'_> {
     /// Force at the times of the bands, up to the end of the run, N.
     fn of_bands(&self) -> impl Iterator<Item = f64> {
         let places = self.plan.band_samples.iter().enumerate();
-        places
-            .map_while(|(place, look)| self.force_n.get(if self.every_sample { *look } else { place }).copied())
+        places.map_while(|(place, look)| {
+            self.force_n.get(if self.every_sample { *look } else { place }).copied()
+        })
     }
 }
 

@@ -3,7 +3,7 @@
 use super::plan::Plan;
 use super::row::{Ran, Row};
 use crate::estimate::NORMAL_95;
-use crate::simulate::{Metric, NotJudged, ReachedStep, RunStatus, TimeRequirement, StepLimits, concerned};
+use crate::simulate::{Metric, NotJudged, ReachedStep, RunStatus, StepLimits, TimeRequirement, concerned};
 
 /// A requirement in time, and the number of runs that satisfy it.
 #[derive(Clone, Debug, PartialEq)]

@@ -82,7 +82,10 @@ impl Summary {
             statuses: RunStatus::OF_ROWS
                 .map(|status| rows.iter().filter(|row| row.status() == status).count()),
             refused: rows.iter().filter_map(refused).collect(),
-            early_ends: driven.iter().filter_map(|(run, ran)| Some((*run, ran.status, ran.end_time_s?))).collect(),
+            early_ends: driven
+                .iter()
+                .filter_map(|(run, ran)| Some((*run, ran.status, ran.end_time_s?)))
+                .collect(),
             occurrences: occurrences(&driven),
             worst: worst(&metrics),
             requirements: required(plan, rows),

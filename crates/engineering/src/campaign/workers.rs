@@ -66,13 +66,18 @@ pub(super) struct MissingRuns {
     pub(super) forces: bool,
 }
 
-/// Simulates runs and reports them, rows in the order of the runs; if `report_progress` returns `false`,
-/// everything ends soon with the rows obtained so far. Each thread takes a run as soon as one is
-/// free, and takes more into its lanes if there are more runs than threads.
+/// Simulates runs and reports them, rows in the order of the runs; if `report_progress` returns
+/// `false`, everything ends soon with the rows obtained so far. Each thread takes a run as soon as
+/// one is free, and takes more into its lanes if there are more runs than threads.
 ///
 /// # Errors
 /// [`CampaignError`] if a run does not fit the machine, or a notification fails.
-pub(super) fn run(plan: &Plan, requested: MissingRuns, effort: Effort, report_progress: Tell<'_>) -> Result<(), CampaignError> {
+pub(super) fn run(
+    plan: &Plan,
+    requested: MissingRuns,
+    effort: Effort,
+    report_progress: Tell<'_>,
+) -> Result<(), CampaignError> {
     let threads = effort.threads.max(1);
     let MissingRuns { runs, known, forces } = requested;
     let first = runs.start;

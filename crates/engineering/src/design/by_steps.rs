@@ -174,10 +174,13 @@ fn led<'a>(
 ) -> Result<Option<LedDesign<'a>>, DesignError> {
     let given = aimed.given;
     let required = given.in_time.iter().find(|one| one.follows).map(|one| one.step_limits);
-    let required = required
-        .or((run.led.is_some() || project_design.exceeded_command().is_some()).then_some(StepLimits::NOTHING));
+    let required =
+        required
+            .or((run.led.is_some() || project_design.exceeded_command().is_some())
+                .then_some(StepLimits::NOTHING));
     let (Some(required), Family::Uncertain(family)) = (required, &given.family) else { return Ok(None) };
-    let (Some(samples), CoefficientFormat::Double) = (run.outcome.samples(), project_design.options.coefficients)
+    let (Some(samples), CoefficientFormat::Double) =
+        (run.outcome.samples(), project_design.options.coefficients)
     else {
         return Ok(None);
     };

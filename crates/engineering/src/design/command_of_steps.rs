@@ -153,7 +153,8 @@ pub(super) fn command_of_steps(
     if of.is_empty() || project_design.designed.view.audit.stability.verdict != Verdict::Met {
         return Ok(None);
     }
-    let mut search = CommandSearch { project_design, family, plants, of, visited: vec![], watch, is_stopped: false };
+    let mut search =
+        CommandSearch { project_design, family, plants, of, visited: vec![], watch, is_stopped: false };
     let found = search.found(setup, depth);
     if search.is_stopped { Err(Stopped) } else { Ok(found) }
 }
@@ -169,12 +170,13 @@ pub(super) fn with_command_of_steps(
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, DesignError> {
     let mut unfinished = project_design.unfinished.clone();
-    let command_of_steps = match ScenarioSteps::of(setup, &project_design).is_some_and(|steps| !steps.is_empty()) {
-        true => unless_stopped(&mut unfinished, DesignPart::CommandOfSteps, || {
-            Ok(command_of_steps((setup, &project_design), plants, CommandDepth::Whole, watch)?)
-        })?,
-        false => None,
-    };
+    let command_of_steps =
+        match ScenarioSteps::of(setup, &project_design).is_some_and(|steps| !steps.is_empty()) {
+            true => unless_stopped(&mut unfinished, DesignPart::CommandOfSteps, || {
+                Ok(command_of_steps((setup, &project_design), plants, CommandDepth::Whole, watch)?)
+            })?,
+            false => None,
+        };
     Ok(ProjectDesign { unfinished, command_of_steps, ..project_design })
 }
 

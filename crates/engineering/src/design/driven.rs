@@ -64,7 +64,8 @@ pub(super) fn found_and_tried(
     let (mut driven, mut twin) =
         simplest((source, setup), begins, seed, &mut within(&mut *watch, [0.0, 0.7]))?;
     // without the limit that leads away from a loop without gain, the search takes another path
-    if first != StepAim::AS_REQUIRED && !driven.project_design.is_stopped() && misses(&driven.project_design) {
+    if first != StepAim::AS_REQUIRED && !driven.project_design.is_stopped() && misses(&driven.project_design)
+    {
         let begins = (given, StepAim::AS_REQUIRED, &plants);
         match simplest((source, setup), begins, seed, &mut within(&mut *watch, [0.7, 0.9])) {
             Ok((other, _)) if is_better(&other.project_design, &driven.project_design) => {
@@ -78,7 +79,8 @@ pub(super) fn found_and_tried(
     let DrivenDesign { aim, run, project_design, known } = driven;
     let best = (run, project_design);
     let aimed = AimedSteps { given, aim, added: &known, plants: &plants, from: SearchStarts::Nearest };
-    let (run, mut project_design) = shorter((source, setup), aimed, best, &mut within(&mut *watch, [0.9, 0.94]));
+    let (run, mut project_design) =
+        shorter((source, setup), aimed, best, &mut within(&mut *watch, [0.9, 0.94]));
     if project_design.command_of_steps.is_none() {
         project_design = with_command_of_steps((setup, project_design), &plants, watch)?;
     }
@@ -92,11 +94,15 @@ pub(super) fn found_and_tried(
     }
     let mut unfinished = std::mem::take(&mut project_design.unfinished);
     let twin = twin.filter(|twin| twin.of == project_design.design);
-    let is_to_be_found = twin.is_none() && run.problem.timing.sample_time_s.is_some() && !project_design.is_stopped();
+    let is_to_be_found =
+        twin.is_none() && run.problem.timing.sample_time_s.is_some() && !project_design.is_stopped();
     let (own_twin, found) = both(
         &mut within(watch, [0.97, 1.0]),
         0.5,
-        |watch| is_to_be_found.then(|| continuous_as_sampled((source, setup), &run.problem, &project_design, watch)),
+        |watch| {
+            is_to_be_found
+                .then(|| continuous_as_sampled((source, setup), &run.problem, &project_design, watch))
+        },
         |watch| {
             unless_stopped(&mut unfinished, DesignPart::Relaxations, || {
                 relaxations(setup, aimed, (&run, &project_design), watch).map(Some)
@@ -133,9 +139,11 @@ fn simplest(
     watch: Watch<'_>,
 ) -> Result<(DrivenDesign, Option<ContinuousTwin>), DesignError> {
     let rig = (source, setup);
-    let (aim, run, project_design) = found(setup, (given, first, plants), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
+    let (aim, run, project_design) =
+        found(setup, (given, first, plants), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
     let aimed = AimedSteps { given, aim, added: &[], plants, from: SearchStarts::Nearest };
-    let (simple, project_design) = with_simpler(setup, aimed, (&run, project_design), &mut within(&mut *watch, [0.5, 0.55]));
+    let (simple, project_design) =
+        with_simpler(setup, aimed, (&run, project_design), &mut within(&mut *watch, [0.5, 0.55]));
     let Some(simple) = simple else {
         return driven(rig, aimed, (run, project_design), &mut within(watch, [0.55, 1.0]));
     };
@@ -178,8 +186,12 @@ fn driven(
     watch: Watch<'_>,
 ) -> Result<(DrivenDesign, Option<ContinuousTwin>), DesignError> {
     let problem = run.problem.clone();
-    let (project_design, twin) =
-        with_trial_and_twin((source, setup), &problem, project_design, &mut within(&mut *watch, [0.0, 0.25]))?;
+    let (project_design, twin) = with_trial_and_twin(
+        (source, setup),
+        &problem,
+        project_design,
+        &mut within(&mut *watch, [0.0, 0.25]),
+    )?;
     let mut best = (run, project_design);
     // the design from which the next one begins, unless it is the best one
     let mut latest: Option<(DesignRun, ProjectDesign)> = None;
@@ -269,7 +281,9 @@ fn shorter(
     });
     match found {
         Ok(Some((_, searched))) if searched.is_stopped() => stopped_in_search(run, project_design),
-        Ok(Some((run, searched))) if agrees_as_well(&searched, &project_design) && !misses(&searched) => (run, searched),
+        Ok(Some((run, searched))) if agrees_as_well(&searched, &project_design) && !misses(&searched) => {
+            (run, searched)
+        }
         Err(DesignError::Stopped(_)) => stopped_in_search(run, project_design),
         Ok(_) | Err(_) => (run, project_design),
     }
@@ -328,6 +342,8 @@ fn with_trial(
 /// requirement; if the runs of both satisfy it, the worst run with room for the plants between
 /// counts.
 fn is_better(one: &ProjectDesign, other: &ProjectDesign) -> bool {
-    let runs = |project_design: &ProjectDesign| (project_design.worst_run().max(1.0), project_design.worst_run_with_room());
+    let runs = |project_design: &ProjectDesign| {
+        (project_design.worst_run().max(1.0), project_design.worst_run_with_room())
+    };
     !one.is_stopped() && rank(one).0 <= rank(other).0 && runs(one) < runs(other)
 }

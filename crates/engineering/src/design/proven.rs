@@ -27,7 +27,8 @@ pub(super) fn proven(
     for round in 0..=REFUTATIONS_MAXIMUM {
         let Some(design) = run.outcome.design.clone().filter(|_| !run.outcome.stopped) else { break };
         let was_met = design.audit.verdict == Verdict::Met;
-        let mut project_design = ProjectDesign::new(setup, given, &run.problem, design, options.clone(), watch)?;
+        let mut project_design =
+            ProjectDesign::new(setup, given, &run.problem, design, options.clone(), watch)?;
         prove_claims(&project_design.designed.problem, &mut project_design.designed.view, watch)?;
         let refuting = if was_met { refuting(&project_design.designed) } else { vec![] };
         if refuting.is_empty() || round == REFUTATIONS_MAXIMUM {

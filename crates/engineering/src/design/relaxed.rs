@@ -105,8 +105,10 @@ pub(super) fn relaxations<'a>(
     (run, project_design): (&'a DesignRun, &'a ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<Relaxations, DesignError> {
-    let has_no_end =
-        matches!(project_design.design.status, DesignStatus::NotConverged { .. } | DesignStatus::NotStabilised);
+    let has_no_end = matches!(
+        project_design.design.status,
+        DesignStatus::NotConverged { .. } | DesignStatus::NotStabilised
+    );
     let (Some(samples), false) = (run.outcome.samples(), has_no_end || project_design.is_stopped()) else {
         return Ok(Relaxations::default());
     };

@@ -133,7 +133,8 @@ pub(super) fn repaired(
     };
     let mut design = match repair.other.take() {
         Some(found) if repair.status == RepairStatus::Met => {
-            let (published, continuous) = (project_design.published.clone(), project_design.continuous.clone());
+            let (published, continuous) =
+                (project_design.published.clone(), project_design.continuous.clone());
             let explanations = project_design.explanations.clone();
             repair.other = Some(Box::new(project_design));
             ProjectDesign { published, continuous, explanations, ..*found }

@@ -49,15 +49,17 @@ pub(super) fn found(
             Err(_) => break,
         }
         // a stricter aim seldom helps if the limits of this one are missed, and takes as long
-        let met =
-            found.last().filter(|(.., project_design)| !project_design.is_stopped() && project_design.design.status == DesignStatus::Met);
+        let met = found.last().filter(|(.., project_design)| {
+            !project_design.is_stopped() && project_design.design.status == DesignStatus::Met
+        });
         let Some((.., project_design)) = met else { break };
         match aim.stricter(project_design).filter(|_| repetition < REPETITIONS) {
             Some(stricter) => aim = stricter,
             None => break,
         }
     }
-    let reached_structures: Vec<ReachedStructure> = found.iter().flat_map(|(.., project_design)| project_design.structures.clone()).collect();
+    let reached_structures: Vec<ReachedStructure> =
+        found.iter().flat_map(|(.., project_design)| project_design.structures.clone()).collect();
     let best = found.into_iter().min_by(|(.., one), (.., other)| by_rank(one, other));
     let (aim, run, project_design) = best.ok_or(Stopped)?;
     Ok((aim, run, project_design.with_shorter(reached_structures)))
@@ -93,14 +95,17 @@ fn led_by_steps(
 pub(super) fn rank(project_design: &ProjectDesign) -> (u8, f64) {
     let verdict = match project_design.designed.view.audit.verdict {
         Verdict::Met
-            if project_design.design.status == DesignStatus::Met && project_design.exceeded_prefilter_gain().is_none() =>
+            if project_design.design.status == DesignStatus::Met
+                && project_design.exceeded_prefilter_gain().is_none() =>
         {
             0
         }
         Verdict::Met => 1,
         Verdict::NotProven => 2,
         // a stabilising loop is nearer than any that does not stabilise the plants
-        Verdict::Violated => 3 + u8::from(project_design.designed.view.audit.stability.verdict == Verdict::Violated),
+        Verdict::Violated => {
+            3 + u8::from(project_design.designed.view.audit.stability.verdict == Verdict::Violated)
+        }
     };
     (verdict, StepAim::AS_REQUIRED.excess(project_design))
 }

@@ -17,7 +17,7 @@ use crate::audit::TimeFinding;
 use crate::project::{DeclaredLimit, DeclaredSpecification, Project, ResponseRequirement, SpecificationKind};
 use crate::robust::{RobustError, RobustProblem};
 use crate::setup::Setup;
-use crate::simulate::{ReachedStep, TimeRequirement, StepLimits};
+use crate::simulate::{ReachedStep, StepLimits, TimeRequirement};
 use crate::specification::{specification, specifications};
 use phea_dynamics::closed_loop::ClosedLoop;
 
@@ -85,7 +85,8 @@ impl StepAim {
     /// Largest ratio of a property of the steps of a design to the aim: at most 1 if all are within
     /// it.
     pub(super) fn excess(self, project_design: &ProjectDesign) -> f64 {
-        let required = project_design.designed.view.in_time.iter().filter(|finding| finding.requirement.follows);
+        let required =
+            project_design.designed.view.in_time.iter().filter(|finding| finding.requirement.follows);
         let ratio = |finding: &TimeFinding| {
             let step_limits = self.step_limits(finding.requirement.step_limits);
             finding.reached().map_or(f64::INFINITY, |reached| step_limits.excess(&reached))
@@ -172,8 +173,9 @@ impl StepAim {
         for limit in [&mut stricter.upper, &mut stricter.lower] {
             let Some(DeclaredLimit::Response(step_limits)) = limit else { continue };
             if step_limits.function.is_none() {
-                step_limits.overshoot_percent =
-                    step_limits.overshoot_percent.map(|most| (self.overshoot * most).max(LEAST_OVERSHOOT_PERCENT));
+                step_limits.overshoot_percent = step_limits
+                    .overshoot_percent
+                    .map(|most| (self.overshoot * most).max(LEAST_OVERSHOOT_PERCENT));
             }
         }
         if let Some(DeclaredLimit::Response(step_limits)) = &mut stricter.lower
@@ -196,7 +198,8 @@ impl StepAim {
         // one pole settles at p t = ln(100/band)
         let decay = EXTRA_DECAY * portable::ln(100.0 / step_limits.band_percent);
         let root = Some(EXTRA_ROOT.max(decay) / step_limits.horizon_s);
-        let overshoot_percent = self.overshoot * step_limits.overshoot_percent.unwrap_or(step_limits.band_percent);
+        let overshoot_percent =
+            self.overshoot * step_limits.overshoot_percent.unwrap_or(step_limits.band_percent);
         let upper = ResponseRequirement {
             overshoot_percent: Some(overshoot_percent.max(LEAST_OVERSHOOT_PERCENT)),
             zero: root,

@@ -6,7 +6,8 @@ use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{
-    BINDING_DB, ControllerChoice, NamedStructure, Objective, PrefilterChoice, StructureEnding, SearchedStructure,
+    BINDING_DB, ControllerChoice, NamedStructure, Objective, PrefilterChoice, SearchedStructure,
+    StructureEnding,
 };
 use phea_qft::loop_shaping::Structure;
 use phea_qft::verification::SpecificationMargin;
@@ -62,7 +63,10 @@ pub fn structure_key(name: Option<NamedStructure>) -> &'static str {
 }
 
 /// The structures of a design.
-pub(super) fn reached(run: &DesignRun, project_design: &ProjectDesign) -> Result<Vec<ReachedStructure>, DesignError> {
+pub(super) fn reached(
+    run: &DesignRun,
+    project_design: &ProjectDesign,
+) -> Result<Vec<ReachedStructure>, DesignError> {
     let each = run.outcome.searched().iter().map(|searched| reached_by(run, project_design, searched));
     Ok(each.collect::<Result<Vec<ReachedStructure>, LinearError>>()?)
 }
@@ -137,7 +141,8 @@ fn reached_by(
         }
     };
     let has_prefilter = law.is_some_and(|law| !law.prefilter.stages.is_empty());
-    let is_fitted = has_prefilter || !matches!(project_design.options.prefilter, PrefilterChoice::Grow { .. });
+    let is_fitted =
+        has_prefilter || !matches!(project_design.options.prefilter, PrefilterChoice::Grow { .. });
     let steps = match (project_design.designed.view.in_time.first(), &around) {
         (Some(finding), _) if is_chosen => finding.reached(),
         (Some(finding), Some(around)) if is_fitted => steps_of_members(around, &finding.requirement),

@@ -84,7 +84,8 @@ impl<'f> Hill<'f> {
                     .collect();
                 for side in [-step, step] {
                     let moved = fractions.iter().zip(&course);
-                    let next = moved.map(|(fraction, course)| (fraction + side * course).clamp(0.0, 1.0)).collect();
+                    let next =
+                        moved.map(|(fraction, course)| (fraction + side * course).clamp(0.0, 1.0)).collect();
                     let wanted = best + SAME * best.abs();
                     if let Some(found) = self.at_crest(next, step, wanted, &mut crests) {
                         ((fractions, best), higher) = (found, true);

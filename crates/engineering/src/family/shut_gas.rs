@@ -78,7 +78,8 @@ fn examined(family: &UncertainFamily) -> Vec<Vec<f64>> {
         _ => 0,
     };
     let corner = |corner: usize| {
-        let fractions: Vec<f64> = (0..axes).map(|axis| f64::from(u8::from(corner >> axis & 1 == 1))).collect();
+        let fractions: Vec<f64> =
+            (0..axes).map(|axis| f64::from(u8::from(corner >> axis & 1 == 1))).collect();
         family.values(&fractions)
     };
     let mut all = family.members().to_vec();

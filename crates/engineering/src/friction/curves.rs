@@ -6,7 +6,7 @@ use phea_hydraulics::friction::KnottedForce;
 use super::FrictionIdentification;
 use super::motion::ConstantVelocity;
 use super::pressing::PressedRows;
-use super::problem::{FrictionProblem, ShapeCache, SHARED};
+use super::problem::{FrictionProblem, SHARED, ShapeCache};
 use super::shaking::ShakenRows;
 
 /// Friction force at a constant velocity. Units: m/s, N.

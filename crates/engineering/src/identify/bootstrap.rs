@@ -2,7 +2,7 @@
 
 use phea_dynamics::least_squares::Ending;
 use phea_dynamics::order::sort_numbers;
-use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::random::{stream, uniform};
 use phea_dynamics::watch::{Stopped, Watch, report_progress, unwatched};
 
 use super::channels::Together;

@@ -101,7 +101,8 @@ pub(super) fn required_impedance(
     let [from, to] = EVALUATED_RAD_PER_S;
     let all: Vec<ComparedImpedance> =
         logarithmic_grid(from, to.min(highest), COUNT)?.into_iter().filter_map(at).collect();
-    let points = REPORTED_AT_RAD_PER_S.into_iter().filter(|frequency| *frequency < highest).filter_map(at).collect();
+    let points =
+        REPORTED_AT_RAD_PER_S.into_iter().filter(|frequency| *frequency < highest).filter_map(at).collect();
     Ok(Some(RequiredImpedance { impedance, points, follows_rad_per_s: widest(&all) }))
 }
 

@@ -130,7 +130,10 @@ impl<S: Scalar> RigAtPoint<S> {
                     flow_gains: [flow_gain; 2],
                     flow_pressures: [two * flow_pressure_coefficient; 2],
                 };
-                (chambers, [gas_a.map(|gas| gas.softened(fraction_a)), gas_b.map(|gas| gas.softened(fraction_b))])
+                (
+                    chambers,
+                    [gas_a.map(|gas| gas.softened(fraction_a)), gas_b.map(|gas| gas.softened(fraction_b))],
+                )
             }
         }
     }

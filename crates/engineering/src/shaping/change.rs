@@ -4,10 +4,10 @@ use phea_dynamics::controller::{Compensator, Element as Solved, Stage};
 use phea_qft::manual_shaping::{Edit, EditError, ElementPattern, apply, pass_through};
 
 use super::ShapingError;
+use super::element_request::{self, ElementRequest};
 use super::piece::TextPiece;
 use super::present;
 use super::refused::{ChangeProblem, RefusedChange};
-use super::element_request::{self, ElementRequest};
 use super::workpiece::Workpiece;
 use crate::project::{DeclaredElement, ElementKind, Findings, value_or_finding};
 use crate::robust::RobustProblem;

@@ -54,7 +54,11 @@ pub(super) fn read<'a>(whole: &TextPiece<'a>) -> Result<ElementRequest<'a>, Box<
     let pattern = pattern(&head)?;
     let [magnitude_db, phase_deg] = coordinates(&point)?;
     let frequency_rad_per_s = frequency(&at)?;
-    Ok(ElementRequest { replaced, pattern, point: WantedPoint { frequency_rad_per_s, magnitude_db, phase_deg } })
+    Ok(ElementRequest {
+        replaced,
+        pattern,
+        point: WantedPoint { frequency_rad_per_s, magnitude_db, phase_deg },
+    })
 }
 
 /// Kind of the element, with its given number.

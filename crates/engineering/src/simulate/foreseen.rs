@@ -4,8 +4,8 @@
 use phea_dynamics::simulation::Profile;
 
 use super::bench::ControlledMachine;
-use super::prepared_scenario::driven_by;
 use super::force_limits::{ExceededForce, ForceLimits};
+use super::prepared_scenario::driven_by;
 use super::{SimulateError, measured};
 use crate::project::{
     DeclaredActuator, Findings, InputSignal, LateError, Load, MotionShape, Project, Scenario,

@@ -119,7 +119,8 @@ pub fn frequency_response(
     let rested = rested(setup)?;
     let frequencies = frequencies(request, &rested);
     let count = 2.0 * frequencies.len() as f64;
-    let mut watched = |done: usize| watch(Progress { stage: "frequency response", fraction: done as f64 / count });
+    let mut watched =
+        |done: usize| watch(Progress { stage: "frequency response", fraction: done as f64 / count });
     let mut stopped = false;
     let open_loop = open_loop::measured(&rested, &frequencies, request, &mut |index| {
         stopped |= !watched(index);

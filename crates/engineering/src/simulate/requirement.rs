@@ -73,7 +73,13 @@ pub fn time_requirements(project: &Project) -> Result<Vec<TimeRequirement>, Spec
         let step_limits = StepLimits::of_specification(&requirements_in_time, number)?;
         let mut own = requirements_in_time.iter().filter(|step_limits| step_limits.number == number);
         let follows = own.all(|step_limits| step_limits.follows);
-        Some(TimeRequirement { number, limits: Some(limits), step_limits, follows, steps: RequiredSteps::default() })
+        Some(TimeRequirement {
+            number,
+            limits: Some(limits),
+            step_limits,
+            follows,
+            steps: RequiredSteps::default(),
+        })
     };
     let tracking = closed_loops(project).enumerate().filter_map(of_limits);
     Ok(steps.map(of_step).chain(tracking).collect())

@@ -13,15 +13,15 @@ use phea_machine::{Control, ControllerSamples, Digital, DigitalMemory, Waking, W
 use super::adjusted::AdjustmentWork;
 use super::bench::ControlledMachine;
 use super::columns::SignalParts;
-use super::prepared_scenario::PreparedScenario;
 use super::divergence::Divergence;
 use super::exceeded::Exceeded;
 use super::gas::GasRange;
-use super::run_observer::RunObserver;
 use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
+use super::prepared_scenario::PreparedScenario;
 use super::record::Record;
 use super::repetition::{self, PassPlan, PassResult, Repetition};
+use super::run_observer::RunObserver;
 use super::run_status::RunStatus;
 use super::saved::{self, NotSaved, SavedState};
 use super::{NoLedger, RunLedger, RunOutput, RunTable, SimulateError, ToleranceCheck, Window};
@@ -50,8 +50,8 @@ pub struct ScenarioRun {
     pub repetition: Option<Repetition>,
     /// Divergence of a run that reached its end; `None` if it does not diverge.
     pub divergence: Option<Divergence>,
-    /// Samples at intervals of [`ScenarioRun::sample_interval_s`], or longer ones in a long run; empty if no
-    /// record was requested.
+    /// Samples at intervals of [`ScenarioRun::sample_interval_s`], or longer ones in a long run;
+    /// empty if no record was requested.
     pub record: Record,
     /// Number of samples between two rows of the result.
     pub samples_per_row: usize,
@@ -146,7 +146,8 @@ pub struct UnresolvedMode {
 impl ScenarioRun {
     /// True if the run is so long that it was sampled less often than its figures need.
     pub fn is_coarse(&self) -> bool {
-        self.attention == Attention::Everything && self.sample_interval_s > LONGEST_SAMPLE_INTERVAL_S * (1.0 + 1e-9)
+        self.attention == Attention::Everything
+            && self.sample_interval_s > LONGEST_SAMPLE_INTERVAL_S * (1.0 + 1e-9)
     }
 
     /// True if the progress callback cancelled the run or one of its repetitions.

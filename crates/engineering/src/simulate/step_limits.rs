@@ -67,7 +67,8 @@ impl StepLimits {
         number: usize,
     ) -> Option<StepLimits> {
         let side = |key: &str| {
-            let of_side = |requirement: &&CheckedRequirement| requirement.number == number && requirement.key == key;
+            let of_side =
+                |requirement: &&CheckedRequirement| requirement.number == number && requirement.key == key;
             requirements.clone().into_iter().find(of_side).map(|requirement| requirement.check.required)
         };
         let (upper, lower) = (side("upper"), side("lower"));

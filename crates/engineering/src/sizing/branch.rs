@@ -75,7 +75,8 @@ fn at_gain(
     let step = gain_step(problem, option, model, gain);
     steps.push(step);
     let proportion = option.proportion(model, problem.fluid_modulus);
-    let lengths_m = proportion.map(|fraction| if step.length_m == 0.0 { 0.0 } else { fraction * step.length_m });
+    let lengths_m =
+        proportion.map(|fraction| if step.length_m == 0.0 { 0.0 } else { fraction * step.length_m });
     let stiffness = problem.stroke_stiffness(option, lengths_m, model);
     Branch { by_gain: true, model, steps, lengths_m, stiffness, gain_v_per_n: gain }
 }

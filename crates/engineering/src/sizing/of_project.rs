@@ -91,7 +91,8 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
         load: sized_load(actuator, rig),
         dead_band: dead_band(setup, requirement.flow_gain)?,
         null_flow_gains: rig.null_flow_gains().filter(|_| {
-            requirement.flow_gain
+            requirement
+                .flow_gain
                 .or(project.linear.get("flow_gain"))
                 .or(project.operating_point.spool_side)
                 .is_none()

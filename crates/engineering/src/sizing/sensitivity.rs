@@ -95,7 +95,8 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
 
 fn expanding(hose: Hose, fraction: f64) -> Hose {
     let [volumetric_expansion, operating_expansion, expansion_slope] =
-        [hose.volumetric_expansion, hose.operating_expansion, hose.expansion_slope].map(|each| each * fraction);
+        [hose.volumetric_expansion, hose.operating_expansion, hose.expansion_slope]
+            .map(|each| each * fraction);
     Hose { volumetric_expansion, operating_expansion, expansion_slope, ..hose }
 }
 

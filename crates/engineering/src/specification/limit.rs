@@ -2,12 +2,12 @@
 
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_qft::specification::{
-    ClosedLoop, ExtraRoot, Limit, LimitTable, LowerStepRequirement, MarginError, Translation, UpperStepRequirement, RequirementCheck,
-    check_lower, check_upper, delay_margin_limit, robust_stability_limit_for_gain_increase,
-    robust_stability_limit_for_gain_reduction, robust_stability_limit_for_modulus_margin,
-    robust_stability_limit_for_phase_margin, sensitivity_limit_for_gain_increase,
-    sensitivity_limit_for_gain_reduction, sensitivity_limit_for_modulus_margin,
-    sensitivity_limit_for_phase_margin, tracking_lower, tracking_upper,
+    ClosedLoop, ExtraRoot, Limit, LimitTable, LowerStepRequirement, MarginError, RequirementCheck,
+    Translation, UpperStepRequirement, check_lower, check_upper, delay_margin_limit,
+    robust_stability_limit_for_gain_increase, robust_stability_limit_for_gain_reduction,
+    robust_stability_limit_for_modulus_margin, robust_stability_limit_for_phase_margin,
+    sensitivity_limit_for_gain_increase, sensitivity_limit_for_gain_reduction,
+    sensitivity_limit_for_modulus_margin, sensitivity_limit_for_phase_margin, tracking_lower, tracking_upper,
 };
 
 use super::SpecificationProblem;
@@ -52,7 +52,9 @@ pub(super) fn over_frequency(
             Limit::Rational(of_requirement(requirement, side)?.0)
         }
         (project::DeclaredLimit::Margins(_), _) => return Err(SpecificationProblem::TakesNoMargins),
-        (project::DeclaredLimit::Response(_), _) => return Err(SpecificationProblem::TakesNoRequirementInTime),
+        (project::DeclaredLimit::Response(_), _) => {
+            return Err(SpecificationProblem::TakesNoRequirementInTime);
+        }
     })
 }
 
@@ -62,7 +64,10 @@ fn function(rational: &Rational) -> Result<TransferFunction, SpecificationProble
 }
 
 /// Strictest of the limits that guarantee the margins, or the one that guarantees the delay.
-fn of_margins(requirement: &MarginRequirement, closed_loop: ClosedLoop) -> Result<Limit, SpecificationProblem> {
+fn of_margins(
+    requirement: &MarginRequirement,
+    closed_loop: ClosedLoop,
+) -> Result<Limit, SpecificationProblem> {
     if let (Some(delay_s), ClosedLoop::RobustStability) = (requirement.delay_margin, closed_loop) {
         return Ok(delay_margin_limit(delay_s)?);
     }
@@ -82,7 +87,12 @@ fn of_margins(requirement: &MarginRequirement, closed_loop: ClosedLoop) -> Resul
         ],
         _ => return Err(SpecificationProblem::TakesNoMargins),
     };
-    let margins = [requirement.gain_margin, requirement.gain_reduction, requirement.phase_margin, requirement.modulus_margin];
+    let margins = [
+        requirement.gain_margin,
+        requirement.gain_reduction,
+        requirement.phase_margin,
+        requirement.modulus_margin,
+    ];
     let mut strictest = None::<f64>;
     for (required, translate) in margins.into_iter().zip(translations) {
         if let Some(required) = required {

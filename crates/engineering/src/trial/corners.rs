@@ -9,7 +9,7 @@ use phea_qft::verification::PlantPoint;
 
 use super::reason::TrialMachine;
 use super::rigs::{TrialRig, rig_with};
-use super::run::{TrialRun, PredictedMachine};
+use super::run::{PredictedMachine, TrialRun};
 use super::{STAGE, TrialError};
 use crate::audit::ProjectAudit;
 use crate::robust::RobustProblem;
@@ -65,7 +65,11 @@ pub(super) fn worst_of(runs: &[TrialRun]) -> Vec<TrialRun> {
     worst
 }
 
-fn rigs(setup: &Setup<'_>, problem: &RobustProblem, view: &ProjectAudit) -> Result<Vec<TrialRig>, TrialError> {
+fn rigs(
+    setup: &Setup<'_>,
+    problem: &RobustProblem,
+    view: &ProjectAudit,
+) -> Result<Vec<TrialRig>, TrialError> {
     let Family::Uncertain(family) = &problem.family else { return Ok(vec![]) };
     let (corners, inside) = (corners(family), inside(family));
     let machine = TrialMachine::WorstOfBox { corners: corners.len(), inside: inside.len() };

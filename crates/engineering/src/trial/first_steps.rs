@@ -45,7 +45,9 @@ impl RequiredOfSteps {
         }
         let of_every_step = requirements.iter().any(|one| one.follows && !one.steps.are_stated());
         let step_limits = requirements.iter().filter(|one| one.follows).map(|one| one.step_limits);
-        let times_s = step_limits.flat_map(|step_limits| [step_limits.settling_time_s, step_limits.rise_time_s]).flatten();
+        let times_s = step_limits
+            .flat_map(|step_limits| [step_limits.settling_time_s, step_limits.rise_time_s])
+            .flatten();
         RequiredOfSteps { stated, of_every_step, longest_s: times_s.fold(0.0, f64::max) }
     }
 

@@ -4,7 +4,7 @@ use phea_dynamics::time_response::{StepBaseline, step_metrics};
 
 use super::run::{BAND_PERCENT, Leg};
 use super::steps::Steps;
-use crate::simulate::{ReachedStep, RequiredSteps, ScenarioRun, TimeRequirement, StepLimits};
+use crate::simulate::{ReachedStep, RequiredSteps, ScenarioRun, StepLimits, TimeRequirement};
 
 /// A requirement in time, and the worst result of the steps of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +33,9 @@ pub(super) fn held(
 ) -> Vec<HeldRequirement> {
     let concerned = requirements.iter().filter(|one| one.follows && holds_for(one, required));
     let of = |one: &TimeRequirement| {
-        let of_limits =
-            |step_limits: &StepLimits| worst(steps.driven().map(|leg| reached(step_limits, steps, run, leg)).collect());
+        let of_limits = |step_limits: &StepLimits| {
+            worst(steps.driven().map(|leg| reached(step_limits, steps, run, leg)).collect())
+        };
         let reached = of_limits(&one.step_limits);
         let narrower = BAND_WITH_ROOM * one.step_limits.band_percent;
         HeldRequirement {
@@ -67,7 +68,8 @@ fn reached(step_limits: &StepLimits, steps: &Steps, run: &ScenarioRun, leg: Leg)
     let known = steps.step(run, leg);
     let response = steps.response(run, leg);
     let baseline = StepBaseline::to_value(1.0);
-    let Ok(rows) = step_metrics(&response.times_s, &response.values, baseline, step_limits.band_percent) else {
+    let Ok(rows) = step_metrics(&response.times_s, &response.values, baseline, step_limits.band_percent)
+    else {
         return never;
     };
     let settles = match step_limits.band_percent.total_cmp(&BAND_PERCENT).is_eq() {

@@ -200,7 +200,10 @@ pub(super) enum TrialEffort {
 
 impl<'a> PredictedMachine<'a> {
     /// A machine with its prediction; the runs of a plant of the audit are not repeated.
-    pub(super) fn of(trial_rig: &'a TrialRig, problem: &RobustProblem) -> Result<PredictedMachine<'a>, TrialError> {
+    pub(super) fn of(
+        trial_rig: &'a TrialRig,
+        problem: &RobustProblem,
+    ) -> Result<PredictedMachine<'a>, TrialError> {
         let required = RequiredOfSteps::of(&problem.in_time);
         let effort = if trial_rig.named.is_none() { TrialEffort::Repeated } else { TrialEffort::Once };
         Ok(PredictedMachine { trial_rig, linear: LinearStep::of(trial_rig, problem)?, required, effort })

@@ -66,7 +66,8 @@ pub fn dominance(system: &TransferFunction) -> Vec<ModeContribution> {
         .filter(|(_, pole)| pole.im >= 0.0)
         .map(|(index, &pole)| {
             let count = if pole.im > 0.0 { 2.0 } else { 1.0 };
-            let fraction = count * portable::magnitude(residue(system, index, pole) / pole) / static_gain.abs();
+            let fraction =
+                count * portable::magnitude(residue(system, index, pole) / pole) / static_gain.abs();
             let absence = match () {
                 () if slowest >= 0.0 => Some(ContributionAbsence::NoFinalValue),
                 () if static_gain == 0.0 => Some(ContributionAbsence::ZeroFinalValue),

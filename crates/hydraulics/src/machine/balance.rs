@@ -36,7 +36,12 @@ impl Machine {
     /// ```
     ///
     /// R is the steady resistance of a line, and the areas are those at a position in m.
-    pub(super) fn balanced(&self, state: &MachineState, position: f64, held_value: HeldValue) -> MachineState {
+    pub(super) fn balanced(
+        &self,
+        state: &MachineState,
+        position: f64,
+        held_value: HeldValue,
+    ) -> MachineState {
         let areas = self.areas_at(position);
         let mut best: Unknowns =
             [state.pressure_a, state.pressure_b, state.supply_pressure, state.spool.spool].into();

@@ -141,7 +141,11 @@ impl Machine {
         self.layout.memories()
     }
 
-    fn settled(&self, point: &OperatingPoint, held_value: HeldValue) -> Result<InitialCondition, MachineError> {
+    fn settled(
+        &self,
+        point: &OperatingPoint,
+        held_value: HeldValue,
+    ) -> Result<InitialCondition, MachineError> {
         let start = StartValues {
             position: point.position,
             velocity: point.velocity,

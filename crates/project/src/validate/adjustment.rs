@@ -45,7 +45,8 @@ pub(super) fn input_schedule(
 fn leaves_its_way(signals: &[InputSignal], rest: f64, place: &str, check: &mut Check<'_, '_>) {
     let schedules: Option<Vec<PartSchedule>> = signals.iter().map(PartSchedule::of).collect();
     let Some(schedules) = schedules else { return };
-    let sum = |time: f64| rest + schedules.iter().map(|input_schedule| input_schedule.value(time)).sum::<f64>();
+    let sum =
+        |time: f64| rest + schedules.iter().map(|input_schedule| input_schedule.value(time)).sum::<f64>();
     let times = schedules.iter().flat_map(|input_schedule| &input_schedule.corners).map(|[time, _]| *time);
     let beyond = |time: &f64| !(-ROUNDING..=1.0 + ROUNDING).contains(&sum(*time));
     let Some(time) = times.filter(beyond).reduce(f64::min) else { return };
@@ -56,8 +57,10 @@ fn leaves_its_way(signals: &[InputSignal], rest: f64, place: &str, check: &mut C
         quantity::display(time, &TIME, 4),
         words(rest)
     );
-    let index =
-        schedules.iter().position(|input_schedule| input_schedule.corners.iter().any(|[start, _]| *start == time)).unwrap_or(0);
+    let index = schedules
+        .iter()
+        .position(|input_schedule| input_schedule.corners.iter().any(|[start, _]| *start == time))
+        .unwrap_or(0);
     let help = "no simulation runs this scenario: one of them must be smaller";
     check.warning_with_help(&format!("{place}[{index}]"), message, help);
 }

@@ -2,7 +2,8 @@
 
 use super::Check;
 use crate::{
-    DeclaredLimit, DeclaredSpecification, Formula, MarginRequirement, Project, RequiredStep, ResponseRequirement, Variable,
+    DeclaredLimit, DeclaredSpecification, Formula, MarginRequirement, Project, RequiredStep,
+    ResponseRequirement, Variable,
 };
 use phea_dynamics::closed_loop::ClosedLoop;
 
@@ -115,7 +116,9 @@ fn one_limit(limit: &DeclaredLimit, kind: ClosedLoop, name: &str, path: &str, ch
             refuse(&[&["values"], FUNCTION_KEYS, RESPONSE_KEYS].concat(), because, path, check);
             margins(requirement, kind, path, check);
         }
-        DeclaredLimit::Response(requirement) if kind == ClosedLoop::Tracking => response(requirement, name, path, check),
+        DeclaredLimit::Response(requirement) if kind == ClosedLoop::Tracking => {
+            response(requirement, name, path, check)
+        }
         DeclaredLimit::Response(_) => {
             check.error(path, "a requirement in time makes `upper` and `lower` of \"tracking\"")
         }
@@ -130,7 +133,8 @@ fn nothing(path: &str, check: &mut Check<'_, '_>) {
         Some(_) => "`denominator` needs `numerator`",
         None => "nothing is limited here",
     };
-    let forms = "`numerator` and `denominator`, `frequencies` and `values`, margins, or a requirement in time";
+    let forms =
+        "`numerator` and `denominator`, `frequencies` and `values`, margins, or a requirement in time";
     check.error_with_help(path, message, format!("a limit takes a number, a text, {forms}"));
 }
 
@@ -166,7 +170,9 @@ fn margins(requirement: &MarginRequirement, kind: ClosedLoop, path: &str, check:
     if !stability {
         check.error(&at, "`delay_margin` is a limit of \"robust_stability\" alone");
     }
-    if *requirement != (MarginRequirement { delay_margin: requirement.delay_margin, ..MarginRequirement::default() }) {
+    if *requirement
+        != (MarginRequirement { delay_margin: requirement.delay_margin, ..MarginRequirement::default() })
+    {
         let message = "`delay_margin` falls with frequency and cannot be joined with other margins";
         check.error_with_help(&at, message, "write a [[specification]] of its own for it");
     }

@@ -123,7 +123,8 @@ impl Hull {
                 let along = least * if least < 0.0 { far } else { near };
                 let other = ray.other_modulus;
                 let b = along - fraction * ray.along(ray.other) - SLACK * (far + fraction * other);
-                let c = near * near - fraction * other * other - SLACK * (far * far + fraction * other * other);
+                let c =
+                    near * near - fraction * other * other - SLACK * (far * far + fraction * other * other);
                 negative_gains(rest, b, c, b * b - rest * c).map(|interval| ray.within_window(interval))
             }
         }

@@ -62,8 +62,10 @@ pub(super) fn lesser(a: f64, b: f64) -> f64 {
 impl Leaf {
     /// A leaf of these plants, padded by repeating the last one.
     pub(super) fn of(form: InequalityForm, plants: &[WeightedPlant]) -> Leaf {
-        let mut leaf = Leaf { re: [1.0; LEAF], im: [0.0; LEAF], constant: [1.0; LEAF], fraction: [0.0; LEAF] };
-        let columns = leaf.re.iter_mut().zip(&mut leaf.im).zip(leaf.constant.iter_mut().zip(&mut leaf.fraction));
+        let mut leaf =
+            Leaf { re: [1.0; LEAF], im: [0.0; LEAF], constant: [1.0; LEAF], fraction: [0.0; LEAF] };
+        let columns =
+            leaf.re.iter_mut().zip(&mut leaf.im).zip(leaf.constant.iter_mut().zip(&mut leaf.fraction));
         let last = plants.last().into_iter().cycle();
         for (((re, im), (constant, fraction)), plant) in columns.zip(plants.iter().chain(last)) {
             (*re, *im) = (plant.inverse.re, plant.inverse.im);

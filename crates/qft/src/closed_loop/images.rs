@@ -102,7 +102,8 @@ impl SamplingImages<'_> {
             let beyond = away > plant.range_rad_per_s()[1].min(spacing * IMAGES_MAXIMUM as f64 / 4.0);
             let left = largest.map(|largest| largest * order as f64);
             let back = portable::magnitude(1.0 - sum[2]);
-            let small = left[0] <= LEFT_FRACTION * portable::magnitude(sum[0]) && left[1] <= LEFT_FRACTION * back;
+            let small =
+                left[0] <= LEFT_FRACTION * portable::magnitude(sum[0]) && left[1] <= LEFT_FRACTION * back;
             if (beyond || order > 2) && small {
                 return Some(sum);
             }

@@ -24,11 +24,11 @@ use super::counterexample::{Counterexample, counterexamples, worst_margin_db};
 use super::problem::{DesignOptions, PrefilterChoice};
 use super::result::{DesignRound, Starts};
 use crate::closed_loop::Compensation;
-use crate::plant_cache::PlantCache;
 use crate::loop_shaping::{
     Aim, BestSeen, DescentOptions, DesignProblem, Judgement, Samples, SearchOptions, SearchProblem,
     SearchStatus, Shaping, Structure, descend, search_seeing,
 };
+use crate::plant_cache::PlantCache;
 use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, PrefilterOutcome, fit_prefilter};
 use crate::specification::Specification;
 use crate::verification::{Audit, AuditEffort, AuditProblem, TrackingJudgement, audit_among};

@@ -45,7 +45,11 @@ pub(super) fn binding_limits(audit: &Audit, options: &DesignOptions) -> Vec<Spec
 }
 
 /// The worst violations of the family and of the additional plants.
-pub(super) fn all_conflicts(audit: &Audit, additional_audits: &[Audit], tolerance_db: f64) -> Vec<SpecificationMargin> {
+pub(super) fn all_conflicts(
+    audit: &Audit,
+    additional_audits: &[Audit],
+    tolerance_db: f64,
+) -> Vec<SpecificationMargin> {
     let mut found = conflicts(audit, tolerance_db);
     for (index, audit) in additional_audits.iter().enumerate() {
         let of_plant = |one| SpecificationMargin { plant: PlantPoint::Additional(index), other: None, ..one };

@@ -9,8 +9,8 @@ use super::problem::DesignOptions;
 use super::result::{Design, DesignRound, DesignStatus};
 use super::run::{design_knowing, design_of};
 use super::searched::SearchedStructure;
-use crate::plant_cache::PlantCache;
 use crate::loop_shaping::{DesignProblem, Samples};
+use crate::plant_cache::PlantCache;
 
 /// Outcome of a design.
 #[derive(Clone, Debug)]

@@ -7,8 +7,8 @@ use super::attempt::LoopDesignError;
 use super::problem::{ControllerChoice, DesignOptions};
 use super::result::{Design, DesignStatus};
 use super::run::DesignProgress;
-use crate::plant_cache::PlantCache;
 use crate::loop_shaping::DesignProblem;
+use crate::plant_cache::PlantCache;
 
 /// Reshapes the structure of a design for another problem, by a descent from its controller: for
 /// example to find the performance possible with another timing of the loop. The result is not

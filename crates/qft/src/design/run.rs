@@ -17,11 +17,11 @@ use super::outcome::{DesignOutcome, LearntPlants};
 use super::problem::{ControllerChoice, DesignOptions};
 use super::queue::{QueuedStructure, fewer_zeros, longer, structures_to_search};
 use super::result::{Design, DesignRound, DesignStatus, Relaxation};
+use super::searched::{SearchedStructure, StructureEnding};
 use super::stabilising::has_poles_to_move;
-use super::searched::{StructureEnding, SearchedStructure};
 use crate::family::{Extent, Family, corners, random};
-use crate::plant_cache::PlantCache;
 use crate::loop_shaping::{DesignProblem, Samples, Structure, search_frequencies};
+use crate::plant_cache::PlantCache;
 use crate::verification::{Audit, PlantPoint};
 
 /// Number of points per decade of the frequency grid of a search.

@@ -133,7 +133,8 @@ impl Demand {
     /// Number that exceeds the requirements of any column.
     pub(super) const PER_COLUMN: usize = 64;
 
-    /// Increase of the margin per dB of relaxation of every limit; see [`Keeping::fraction_of_room`].
+    /// Increase of the margin per dB of relaxation of every limit; see
+    /// [`Keeping::fraction_of_room`].
     pub(super) fn rate(&self) -> f64 {
         self.rate
     }

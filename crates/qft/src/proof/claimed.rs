@@ -72,7 +72,8 @@ fn is_dead_time<S: Decimal>(value: &BoxPolynomial<S>) -> bool {
 fn at_member<S: Decimal>(segments: &[ParameterSegment], variables: &[f64]) -> Vec<BoxPolynomial<S>> {
     let value = |one: &ParameterSegment| {
         let (low, high) = (S::decimal(one.low), S::decimal(one.high));
-        let fraction = one.variable.and_then(|variable| variables.get(variable)).map(|fraction| S::decimal(*fraction));
+        let fraction =
+            one.variable.and_then(|variable| variables.get(variable)).map(|fraction| S::decimal(*fraction));
         match fraction {
             None => low,
             Some(fraction) if one.by_factors => low * (fraction * (high / low).ln()).exp(),

@@ -50,7 +50,8 @@ pub(super) fn with_model(certificate: &mut Certificate) -> Result<(), NotProven>
 /// Divides the box with the greatest remainder, relative to its coefficients, repeatedly as long as
 /// it is worthwhile.
 fn divide(certificate: &mut Certificate, fractions: Vec<f64>) {
-    let mut left: Vec<(f64, bool)> = fractions.into_iter().map(|fraction| (fraction, fraction > SMALL)).collect();
+    let mut left: Vec<(f64, bool)> =
+        fractions.into_iter().map(|fraction| (fraction, fraction > SMALL)).collect();
     while left.len() < BOXES_MAXIMUM {
         let worst = left.iter().enumerate().filter(|(_, (_, is_open))| *is_open);
         let Some((of_box, &(own, _))) = worst.max_by(|(_, (one, _)), (_, (other, _))| one.total_cmp(other))

@@ -18,7 +18,7 @@ use super::sampling::poles_of_law;
 use super::statement::{limit, member_of, stated, values_of};
 use super::supremum::{EnclosedSupremum, PlantAtFrequency, SoughtSupremum, corners, enclose};
 use super::walk::{ProofBudget, ProofEffort, ProofRegion, WalkOutcome};
-use super::{NotProven, Proof, SpecificationProof, ClaimStatus};
+use super::{ClaimStatus, NotProven, Proof, SpecificationProof};
 use crate::family::Family;
 use crate::specification::{Limit, Specification};
 use crate::verification::{

@@ -227,7 +227,9 @@ impl ParameterSegment {
         match fraction {
             0.0 => self.low,
             1.0 => self.high,
-            fraction if self.by_factors => self.low * portable::exp(fraction * portable::ln(self.high / self.low)),
+            fraction if self.by_factors => {
+                self.low * portable::exp(fraction * portable::ln(self.high / self.low))
+            }
             fraction => self.low + (self.high - self.low) * fraction,
         }
     }

@@ -20,7 +20,7 @@ use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::range::RequiredRange;
 use phea_dynamics::time_response::TimeResponseError;
 
-pub use check::{Reached, RequirementCheck, RequirementOutcome, RequiredResponse, check_lower, check_upper};
+pub use check::{Reached, RequiredResponse, RequirementCheck, RequirementOutcome, check_lower, check_upper};
 pub use spread::{LimitOrder, TrackingSpread, tracking_spread};
 pub use translation::{tracking_lower, tracking_upper};
 

@@ -324,8 +324,11 @@ impl<'a> StabilityAudit<'a> {
                 && family.extent() == Extent::Box
             {
                 let fractions = family.fractions(values);
-                let of =
-                    |searched| StabilitySearch { searched, first_step: LONGEST_STEP, fractions: fractions.clone() };
+                let of = |searched| StabilitySearch {
+                    searched,
+                    first_step: LONGEST_STEP,
+                    fractions: fractions.clone(),
+                };
                 let fraction = [done, done + 1].map(|done| done as f64 / plants.len() as f64);
                 let tasks = vec![of(&[Badness::Closeness]), of(&[Badness::RealPart])];
                 self.search(tasks, &mut part(&mut *watch, STAGE, fraction))?;
@@ -345,7 +348,8 @@ impl<'a> StabilityAudit<'a> {
                 self.record.doubt(Irresolution::InfinityOpen(found), plant);
             }
             Infinity::Changed(fractions) => {
-                let values: Vec<Vec<f64>> = fractions.iter().map(|fractions| family.values(fractions)).collect();
+                let values: Vec<Vec<f64>> =
+                    fractions.iter().map(|fractions| family.values(fractions)).collect();
                 let changed = values.first().cloned().map(PlantPoint::Parameters);
                 for plant in values.into_iter().map(PlantPoint::Parameters) {
                     let found = self.judged(&plant);

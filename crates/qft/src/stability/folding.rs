@@ -77,7 +77,8 @@ pub(super) fn plants(family: &UncertainFamily, sample_time_s: f64, bases: &[Vec<
     if grid <= PLANTS_MAXIMUM {
         for base in bases.iter().take((PLANTS_MAXIMUM / grid).max(1)) {
             let start = vec![base.clone()];
-            fractions.extend(moving.iter().fold(start, |plants, &index| along(&plants, index, count(&index))));
+            fractions
+                .extend(moving.iter().fold(start, |plants, &index| along(&plants, index, count(&index))));
         }
     } else {
         let each = PLANTS_MAXIMUM / (moving.len() * bases.len().max(1));

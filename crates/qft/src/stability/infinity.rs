@@ -180,7 +180,9 @@ impl Searched<'_> {
         let (least_fraction, fractions) =
             found.into_iter().next().unwrap_or_else(|| (f64::NAN, self.nominal.to_vec()));
         if least_fraction < 0.0 {
-            return Infinity::Changed(between(self.nominal, &fractions, &|fractions| fraction(fractions) > 0.0));
+            return Infinity::Changed(between(self.nominal, &fractions, &|fractions| {
+                fraction(fractions) > 0.0
+            }));
         }
         let parameters = self.moving(&fraction);
         let plant = PlantPoint::Parameters(self.family.values(&fractions));

@@ -149,7 +149,8 @@ fn further(
         if gain < GAIN_MINIMUM {
             return Ok(None);
         }
-        let next = plants.at(fractions.iter().zip(&moves).map(|(fraction, step)| fraction + step).collect())?;
+        let next =
+            plants.at(fractions.iter().zip(&moves).map(|(fraction, step)| fraction + step).collect())?;
         let step = plants.step(from, next);
         let (out, along) = (dot(step, normal), dot(step, [-normal[1], normal[0]]).abs());
         let onward = out > GAIN_MINIMUM / 2.0 && out < STRIDE_MAXIMUM;

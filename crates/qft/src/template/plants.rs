@@ -168,7 +168,8 @@ impl<'a> Plants<'a> {
 
     pub(super) fn between(&mut self, from: usize, to: usize, position: f64) -> Result<usize, Stop> {
         let (start, end) = (&self.list[from].fractions, &self.list[to].fractions);
-        let fractions = start.iter().zip(end).map(|(&start, &end)| start + position * (end - start)).collect();
+        let fractions =
+            start.iter().zip(end).map(|(&start, &end)| start + position * (end - start)).collect();
         self.at(fractions)
     }
 

@@ -252,7 +252,8 @@ impl Joining<'_> {
             _ => vec![],
         };
         let (one, other) = (fractions(one), fractions(other));
-        let far = one.iter().zip(&other).filter(|(one, other)| (*one - *other).abs() >= SAME_FRACTION).count();
+        let far =
+            one.iter().zip(&other).filter(|(one, other)| (*one - *other).abs() >= SAME_FRACTION).count();
         2 * far < one.len().max(1)
     }
 
@@ -315,7 +316,9 @@ impl Joining<'_> {
     /// The boundary between a violated frequency and one that is not violated.
     fn edge(&self, scan: &mut Scan, violated: f64, cache: Option<f64>) -> f64 {
         let finite = |frequency: f64| frequency > 0.0 && frequency < f64::INFINITY;
-        let Some(mut cache) = cache.filter(|cache| finite(*cache) && finite(violated)) else { return violated };
+        let Some(mut cache) = cache.filter(|cache| finite(*cache) && finite(violated)) else {
+            return violated;
+        };
         let mut violated = violated;
         while (violated - cache).abs() > EDGE_TOLERANCE * violated {
             let middle = (violated * cache).sqrt();

@@ -202,7 +202,13 @@ impl MarginDescent<'_> {
     }
 
     /// The point with another fraction of one coordinate, and its margin.
-    fn moved(&self, place: &SearchPoint, block: usize, coordinate: usize, fraction: f64) -> Option<SearchPoint> {
+    fn moved(
+        &self,
+        place: &SearchPoint,
+        block: usize,
+        coordinate: usize,
+        fraction: f64,
+    ) -> Option<SearchPoint> {
         let mut fractions = place.fractions.clone();
         *fractions.get_mut(block)?.get_mut(coordinate)? = fraction;
         let mut members = place.members.clone();
@@ -280,7 +286,8 @@ impl MarginDescent<'_> {
             if fractions == best.fractions {
                 break;
             }
-            let members: Vec<Option<TrialPlant>> = fractions.iter().map(|fractions| self.member(fractions)).collect();
+            let members: Vec<Option<TrialPlant>> =
+                fractions.iter().map(|fractions| self.member(fractions)).collect();
             match self.settled(fractions, members, best.frequency) {
                 Some(found) if found.margin_db < best.margin_db => best = found,
                 _ => break,

@@ -95,7 +95,9 @@ pub(super) fn tasks(
 fn fractions(family: &UncertainFamily, point: Option<&PlantPoint>) -> Vec<f64> {
     match point {
         Some(PlantPoint::Parameters(values)) => family.fractions(values),
-        Some(PlantPoint::Measured(_) | PlantPoint::Additional(_)) | None => vec![0.5; family.coordinates().len()],
+        Some(PlantPoint::Measured(_) | PlantPoint::Additional(_)) | None => {
+            vec![0.5; family.coordinates().len()]
+        }
     }
 }
 

@@ -6,8 +6,8 @@ use phea_dynamics::controller::{NamedStructure, Objective};
 use phea_dynamics::portable::magnitude;
 use phea_dynamics::watch::unwatched;
 use phea_qft::design::{
-    ControllerChoice, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, PoleRange, StructureEnding,
-    SearchedStructure, design,
+    ControllerChoice, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, PoleRange,
+    SearchedStructure, StructureEnding, design,
 };
 use phea_qft::family::{Family, Spacing};
 use phea_qft::loop_shaping::{Samples, SearchProblem, Shaping, Structure, StructureFactor};

@@ -170,7 +170,10 @@ fn assert_met_from(
         let design = designed(problem, options(*seed));
         assert_met(problem, &design, tracking);
         let starts = design.starts.unwrap();
-        assert!(starts.completed > 0 && 0 < starts.stabilised && starts.stabilised <= starts.evaluated, "{starts:?}");
+        assert!(
+            starts.completed > 0 && 0 < starts.stabilised && starts.stabilised <= starts.evaluated,
+            "{starts:?}"
+        );
         let [best, median, worst] = starts.margins_db.unwrap();
         assert!(best >= median && median >= worst && best > -0.01, "{starts:?}");
     }

@@ -109,7 +109,11 @@ fn a_servo_gets_a_prefilter_that_its_audit_meets() {
         assert!(fitted.compensator.stages.iter().all(|stage| stage.element != Element::Gain(1.0)));
         assert!((function.dc_gain() - 1.0).abs() < 1e-15);
         let dense = band(&spaced(0.001, 10.0, 700)).margins(&function);
-        assert!(dense[0].fraction() > 0.6 && dense[0].fraction() <= fitted.worst.fraction(), "{:?}", dense[0]);
+        assert!(
+            dense[0].fraction() > 0.6 && dense[0].fraction() <= fitted.worst.fraction(),
+            "{:?}",
+            dense[0]
+        );
         fitted.worst.fraction()
     });
     assert!(fractions.iter().all(|fraction| (fraction - fractions[0]).abs() < 0.0101), "{fractions:?}");

@@ -99,7 +99,9 @@ pub(crate) fn body_in_use(recorded: &FromRecordings) -> RecordedAnswer {
                 declared: one.declared,
             })
             .collect(),
-        unchanged: unchanged.map(|one| UnchangedValueAnswer { path: one.path.clone(), reason: one.reason }).collect(),
+        unchanged: unchanged
+            .map(|one| UnchangedValueAnswer { path: one.path.clone(), reason: one.reason })
+            .collect(),
         tare_pressure_pa,
         declared_tare_pressure_pa,
         family: recorded.family.as_ref().map(|family| RecordedFamilyAnswer {

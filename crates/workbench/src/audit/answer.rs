@@ -142,7 +142,8 @@ pub(crate) fn body(view: &ProjectAudit) -> AuditAnswer {
     let (audit, names) = (&view.audit, &view.names);
     let margin = audit.delay_margin.as_ref();
     let no_margin = "no margin: not every plant is known to be stable";
-    let (exceeded, satisfied) = view.below_design.clone().map(|limits| (limits.exceeded, limits.satisfied)).unzip();
+    let (exceeded, satisfied) =
+        view.below_design.clone().map(|limits| (limits.exceeded, limits.satisfied)).unzip();
     AuditAnswer {
         verdict: view.verdict(),
         evidence: view.evidence(),

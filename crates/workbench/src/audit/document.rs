@@ -1,7 +1,7 @@
 //! An audit for people.
 
 use phea_dynamics::portable;
-use phea_qft::proof::{Proof, ClaimStatus};
+use phea_qft::proof::{ClaimStatus, Proof};
 use phea_qft::verification::{SpecificationFinding, SpecificationMargin, Verdict};
 
 use super::family_and_loop::{family_sentence, loop_sentence, position_sentence};
@@ -153,11 +153,13 @@ pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
     let mut out = Document::default();
     let Some(proof) = &view.proof else { return out };
     let mut rows = Table::new(["claim", "standing", "closed loop over limit, at least", "at most"]);
-    let word = |claim_status: &ClaimStatus| Cell::from(status_word(claim_status)).marked(claim_status.verdict());
+    let word =
+        |claim_status: &ClaimStatus| Cell::from(status_word(claim_status)).marked(claim_status.verdict());
     rows.row(["every plant is stable".into(), word(&proof.stability), Cell::Missing, Cell::Missing]);
     for (index, own) in proof.specifications.iter().enumerate() {
         let [least, most]: [Cell; 2] = [own.least_db, own.most_db].map(|end| end.map(Cell::margin).into());
-        let is_allowed = own.claim_status == ClaimStatus::Proven && own.most_db.is_some_and(|most_db| most_db > 0.0);
+        let is_allowed =
+            own.claim_status == ClaimStatus::Proven && own.most_db.is_some_and(|most_db| most_db > 0.0);
         let most: Cell = match is_allowed {
             true => most.then(Cell::from(allowed_words(view.audit.tolerance_db))),
             false => most,
@@ -186,7 +188,8 @@ fn not_proven(view: &ProjectAudit, proof: &Proof) -> Vec<String> {
         .enumerate()
         .map(|(index, own)| (numbered(view.named(index)), &own.claim_status));
     let all = std::iter::once(("stability".to_string(), &proof.stability)).chain(named);
-    let reasons = all.filter_map(|(name, claim_status)| Some((why_not_proven(view, proof, claim_status)?, name)));
+    let reasons =
+        all.filter_map(|(name, claim_status)| Some((why_not_proven(view, proof, claim_status)?, name)));
     grouped(reasons).into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))).collect()
 }
 

@@ -1,6 +1,6 @@
 //! Proven claims, and the reasons why others are not, in words.
 
-use phea_qft::proof::{NotProven, Proof, ProofRegion, ClaimStatus};
+use phea_qft::proof::{ClaimStatus, NotProven, Proof, ProofRegion};
 
 use super::ProjectAudit;
 use super::words::rounded;
@@ -16,7 +16,11 @@ pub(super) fn status_word(claim_status: &ClaimStatus) -> &'static str {
 
 /// Reason why a claim is neither proven nor refuted, in a sentence without its full stop; `None` if
 /// it is proven or refuted.
-pub(super) fn why_not_proven(view: &ProjectAudit, proof: &Proof, claim_status: &ClaimStatus) -> Option<String> {
+pub(super) fn why_not_proven(
+    view: &ProjectAudit,
+    proof: &Proof,
+    claim_status: &ClaimStatus,
+) -> Option<String> {
     let ClaimStatus::NotProven(reason) = claim_status else { return None };
     Some(match reason {
         NotProven::Measured => {

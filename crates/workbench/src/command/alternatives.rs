@@ -4,8 +4,8 @@ use super::simulate::frequencies;
 use super::unprinted::Unprinted;
 use super::{CommandError, Watch};
 use crate::alternatives::{
-    self, AlternativesError, AlternativesOptions, PreparedAlternative, FrontRequest, IMPEDANCE_AT, prepared,
-    prepared_cases, judge, outside_words,
+    self, AlternativesError, AlternativesOptions, FrontRequest, IMPEDANCE_AT, PreparedAlternative, judge,
+    outside_words, prepared, prepared_cases,
 };
 use crate::answer::Body;
 use crate::linearize::SweepRequest;

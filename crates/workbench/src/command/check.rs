@@ -13,6 +13,7 @@ use crate::document::Document;
 use crate::family::{family, visited_box};
 use crate::project::{LateError, Loaded, Severity, WrittenUnits, refused};
 use crate::rig::RigError;
+use crate::robust::robust_problem;
 use crate::setup::Setup;
 use crate::simulate::{foreseen, foreseen_late, unreadable};
 use crate::source::Source;
@@ -46,7 +47,9 @@ pub(super) fn check(
     // every error of measured plants, and not only the first missing file
     let underived = derived.is_empty().then(|| without_derived(source, &setup)).transpose()?;
     let of_alternatives = read_alternatives(source, loaded, catalogues)?;
-    let impossible = Impossible::all(source, loaded, &setup)?;
+    let is_specified = !loaded.project.specifications.is_empty();
+    let problem = if is_specified { robust_problem(source, &setup).ok() } else { None };
+    let impossible = Impossible::all(source, loaded, &setup, problem.as_ref())?;
     let of_scenarios = scenarios(source, loaded, &setup)?;
     let requirements_in_time = requirements_in_time(&loaded.project)?;
     let visited = visited_box(&setup)?;

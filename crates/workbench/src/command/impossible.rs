@@ -1,11 +1,12 @@
 //! Requirements that no loop can satisfy, with their lines, in words and in JSON.
 
-use phea_engineering::impossible::{Impossibilities, Impossibility, ImpossibleStep, impossibilities};
+use phea_engineering::impossible::{Impossibility, ImpossibleStep, impossibilities};
 
 use crate::answer::Answer;
 use crate::caveat::{Caveat, UncountedEffect};
 use crate::impossible::late_of;
 use crate::project::{LateError, Loaded, refused};
+use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::specification::SpecificationError;
@@ -31,7 +32,7 @@ pub(super) struct Impossible {
 }
 
 impl Impossible {
-    /// The requirements of a project that no loop can satisfy.
+    /// The requirements of a project that no loop can satisfy, given its robust problem, if any.
     ///
     /// # Errors
     /// [`SpecificationError`] for a limit that is absent or not a function of frequency.
@@ -39,10 +40,11 @@ impl Impossible {
         source: &dyn Source,
         loaded: &Loaded,
         setup: &Setup<'_>,
+        problem: Option<&RobustProblem>,
     ) -> Result<Vec<Impossible>, SpecificationError> {
-        let Impossibilities { found, problem } = impossibilities(source, setup)?;
+        let found = impossibilities(setup, problem)?;
         let of = |fact: Impossibility| {
-            let at = late_of(&fact, problem.as_ref(), &setup.project.units)?;
+            let at = late_of(&fact, problem, &setup.project.units)?;
             let line = refused(source, loaded, &at).diagnostics.first().map_or(0, |found| found.line);
             Some(Impossible { fact, at, line })
         };

@@ -68,7 +68,7 @@ pub(super) fn verify_answer(
     let mut files = audit::files(&view);
     files.extend(certificate_of(loaded, &view, CERTIFICATE_FILE));
     let is_met = view.verdict() == Verdict::Met;
-    let impossible = Impossible::all(source, loaded, &setup)?;
+    let impossible = Impossible::all(source, loaded, &setup, Some(&problem))?;
     let mut document = Document::default();
     document.warnings(impossible.iter().map(Impossible::sentence));
     let mut body = VerifyAnswer {

@@ -118,7 +118,7 @@ struct ReplacedRangeAnswer {
     beyond: [bool; 2],
 }
 
-/// What `check` says to programs; `further_warnings` are warnings in addition to those of the reader.
+/// JSON of `check`; `further_warnings` are added to the warnings of the reader.
 pub(crate) fn body(
     loaded: &Loaded,
     derived: &[Derived],

@@ -2,7 +2,7 @@
 
 use phea_dynamics::controller::NamedStructure;
 use phea_engineering::design::{
-    DesignVerdict, ProjectDesign, ReachedStructure, RigMiss, SearchedLimit, SearchedControllers,
+    DesignVerdict, ProjectDesign, ReachedStructure, RigMiss, SearchedControllers, SearchedLimit,
     UnusableController,
 };
 use phea_qft::loop_shaping::{Structure, StructureFactor};

@@ -17,8 +17,9 @@ use super::{
 use crate::estimate::Estimate;
 use crate::identify_error::IdentifyError;
 use crate::project::{
-    self, FromRecordings, HashedFile, IdentifiedFamily, IdentifiedNumber, IdentifiedUse, UnchangedNumber,
-    UnchangedReason, LEAKAGE_MODELS, Loaded, Origin, Project, RecordedTest, UncertaintyDirection, sha256, word_of,
+    self, FromRecordings, HashedFile, IdentifiedFamily, IdentifiedNumber, IdentifiedUse, LEAKAGE_MODELS,
+    Loaded, Origin, Project, RecordedTest, UncertaintyDirection, UnchangedNumber, UnchangedReason, sha256,
+    word_of,
 };
 use crate::source::{Memory, Source};
 
@@ -109,7 +110,8 @@ pub fn in_use(
     let declared = loaded.project.actuator.as_ref();
     let tare_pressures = [drop, declared.map_or(drop, |one| one.valve.tare_drop(&one.supply))];
     let files = hashes;
-    let recorded = FromRecordings { project_sha256, files, numbers, unchanged, tare_pressures, family, settings };
+    let recorded =
+        FromRecordings { project_sha256, files, numbers, unchanged, tare_pressures, family, settings };
     Ok(Some(Loaded { sha256, ..read_again(source, loaded, recorded)? }))
 }
 

@@ -1,7 +1,7 @@
 //! Identified numbers that replace those declared in a project, for people.
 
 use super::COVERAGE;
-use crate::answer::{unchanged_because, significant};
+use crate::answer::{significant, unchanged_because};
 use crate::document::{Cell, Document, Table};
 use crate::project::{FromRecordings, IdentifiedFamily, Loaded};
 use crate::quantity::{PRESSURE, display};

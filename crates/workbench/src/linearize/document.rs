@@ -7,8 +7,8 @@ use phea_dynamics::portable;
 use phea_hydraulics::linear::{ModeContribution, ResponseDifference};
 
 use super::{
-    AgreementBand, ComparedImpedance, RequiredImpedance, FIRST_ORDER, LUMPED, Linearization, LinkagePlace,
-    LinkagePosition, ReductionDifference, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT, hiding_mass_words,
+    AgreementBand, ComparedImpedance, FIRST_ORDER, LUMPED, Linearization, LinkagePlace, LinkagePosition,
+    ReductionDifference, RequiredImpedance, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT, hiding_mass_words,
     no_closed_impedance_words, stiffness_sentence,
 };
 use crate::answer::significant;

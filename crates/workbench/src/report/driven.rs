@@ -5,7 +5,7 @@ use crate::error::CommandError;
 use crate::project::Project;
 use crate::setup::Setup;
 use crate::simulate::{
-    Cause, Metric, NamedRun, RunStatus, ScenarioRun, SimulateError, TimeRequirement, StepLimits, Window,
+    Cause, Metric, NamedRun, RunStatus, ScenarioRun, SimulateError, StepLimits, TimeRequirement, Window,
     cause_words, cells_of, concerns, simulate_project, status_words, time_requirements,
 };
 use crate::source::Source;

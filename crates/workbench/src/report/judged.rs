@@ -52,7 +52,9 @@ pub(super) fn judged(
     };
     let bounds = problem.at_design_frequencies(watch)?;
     let given_trial = match &given {
-        Some(view) => simulated_trial(source, setup, (&problem, view), DrivenCorners::WhereElseSatisfies, watch)?,
+        Some(view) => {
+            simulated_trial(source, setup, (&problem, view), DrivenCorners::WhereElseSatisfies, watch)?
+        }
         None => None,
     };
     let designed = match design::is_requested(project) {

@@ -9,7 +9,7 @@ use crate::figure::Figure;
 use crate::project::{Project, Scenario};
 use crate::quantity::{MotionWords, Units};
 use crate::simulate::{
-    Metric, Metrics, NamedRun, TimeRequirement, StepLimits, Window, adjustment_sentence, cause_words,
+    Metric, Metrics, NamedRun, StepLimits, TimeRequirement, Window, adjustment_sentence, cause_words,
     cells_of, close_ups, coarse_sentence, gas_sentence, headline, label_within, measured, measured_together,
     metrics_row, occurrence_sentences, pictures, published, published_row, required_overshoot,
     required_settling, requirement_of, together, turns, windows,
@@ -145,7 +145,8 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
             out.table(rows);
         }
     }
-    let requirement = required.and_then(|required| Some((required, requirement_words(&required.step_limits)?)));
+    let requirement =
+        required.and_then(|required| Some((required, requirement_words(&required.step_limits)?)));
     let requirement = requirement.map_or(String::new(), |(required, words)| {
         let steps = if required.steps.are_stated() { "the required step" } else { "every step" };
         format!(

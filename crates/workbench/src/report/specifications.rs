@@ -17,7 +17,9 @@ use crate::project::Project;
 use crate::quantity::{DisplayUnit, RATIO, display};
 use crate::robust::RobustProblem;
 use crate::simulate::{RequiredSteps, TimeRequirement, required_words};
-use crate::specification::{SpecificationError, name_words, stated, requirement_sentence, requirements_in_time};
+use crate::specification::{
+    SpecificationError, name_words, requirement_sentence, requirements_in_time, stated,
+};
 use crate::verdict_words::{frequency_number, frequency_words};
 
 pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chapter, CommandError> {
@@ -37,7 +39,11 @@ pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chap
     }
     if !requirements_in_time.is_empty() {
         out.heading("Tracking limits in time");
-        out.marked(requirements_in_time.iter().map(|requirement| (Some(requirement.is_met().into()), requirement_sentence(requirement))));
+        out.marked(
+            requirements_in_time
+                .iter()
+                .map(|requirement| (Some(requirement.is_met().into()), requirement_sentence(requirement))),
+        );
     }
     if !margins.is_empty() {
         out.heading("Margins that the limits guarantee");

@@ -7,7 +7,7 @@ use super::repetition::{divergence_words, sentences as doubts, work_words};
 use super::required::requirement_sentences;
 use super::{
     AdjustmentWork, BeyondExpansion, Cause, GasRange, Metric, Metrics, Occurrence, Overlay, PerMetric,
-    RunStatus, ScenarioComparison, ScenarioRun, StoppedRun, TimeRequirement, StepLimits, Window, concerns,
+    RunStatus, ScenarioComparison, ScenarioRun, StepLimits, StoppedRun, TimeRequirement, Window, concerns,
     status_words,
 };
 use crate::answer::significant;

@@ -50,10 +50,15 @@ pub(crate) fn requirement_sentences(project: &Project, run: &ScenarioRun) -> Vec
 
 /// A requirement in a run, in words that continue the name of the run.
 pub(crate) fn requirement_sentence(one: &ScenarioRequirement) -> String {
-    let required = format!("what specification {} requires, {}", one.number, required_words(&one.step_limits));
+    let required =
+        format!("what specification {} requires, {}", one.number, required_words(&one.step_limits));
     match (one.reached, one.is_satisfied()) {
         (Ok(reached), Some(is_satisfied)) => {
-            format!("{} {required}: {}", satisfied_word(is_satisfied), reached_words(&one.step_limits, &reached))
+            format!(
+                "{} {required}: {}",
+                satisfied_word(is_satisfied),
+                reached_words(&one.step_limits, &reached)
+            )
         }
         (Err(why), _) => format!("does not judge {required}: {}", not_judged_words(why)),
         (Ok(_), None) => required,
@@ -69,7 +74,7 @@ pub(super) struct ScenarioRequirementAnswer {
     required: RequiredStepAnswer,
     /// Outcome for the requirement.
     verdict: OrReason<Satisfaction>,
-    #[answer(flatten)]
+    /// Worst step of the run; null without a verdict.
     reached: Option<WorstStepAnswer>,
 }
 

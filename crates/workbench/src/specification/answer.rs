@@ -76,7 +76,7 @@ struct ReachedStepAnswer {
     reason: Option<String>,
 }
 
-/// A wish in time in the JSON of `check`.
+/// A requirement in time in the JSON of `check`.
 pub(crate) fn requirement_answer(requirement: &CheckedRequirement) -> CheckedRequirementAnswer {
     let (required, reached) = (requirement.check.required, requirement.check.reached);
     let step = |overshoot_percent: f64, settling_time_s: Option<f64>| RequiredResponseAnswer {

@@ -1,7 +1,7 @@
 //! A requirement in time and the values that its limit reaches, in a sentence.
 
 use phea_dynamics::time_response::Settling;
-use phea_qft::specification::{RequirementCheck, RequirementOutcome, RequiredResponse};
+use phea_qft::specification::{RequiredResponse, RequirementCheck, RequirementOutcome};
 
 use super::CheckedRequirement;
 use crate::quantity::{RATIO, display};

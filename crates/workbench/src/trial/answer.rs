@@ -5,7 +5,7 @@ use super::{Agreement, HeldRequirement, Leg, StepSize, Trial, TrialRun, TrialSte
 use crate::answer::{Answer, OrReason, words};
 use crate::plant_names::NamedPlant;
 use crate::quantity::{FORCE, QuantityName};
-use crate::simulate::{RunStatus, Satisfaction};
+use crate::simulate::{RunStatus, Satisfaction, WorstStepAnswer};
 use crate::specification::RequiredStepAnswer;
 
 /// Verdict of an audit tested on the nonlinear machine.
@@ -86,12 +86,8 @@ struct HeldRequirementAnswer {
     verdict: Satisfaction,
     /// Required step response.
     required: RequiredStepAnswer,
-    /// Greatest overshoot, of the step.
-    overshoot_percent: f64,
-    /// Longest settling time; `inf` if a step does not settle.
-    settling_time_s: f64,
-    /// Longest rise from 10 to 90 percent; `inf` if a step does not rise.
-    rise_time_s: f64,
+    /// Worst step of the run.
+    reached: WorstStepAnswer,
 }
 
 words! {
@@ -153,9 +149,7 @@ fn held(held: &HeldRequirement) -> HeldRequirementAnswer {
         specification: held.number,
         verdict: held.is_satisfied.into(),
         required: (&held.step_limits).into(),
-        overshoot_percent: held.reached.overshoot_percent,
-        settling_time_s: held.reached.settling_time_s,
-        rise_time_s: held.reached.rise_time_s,
+        reached: held.reached.into(),
     }
 }
 

@@ -142,7 +142,10 @@ fn a_table_of_another_campaign_is_left_unchanged() {
     };
     assert_eq!(refused(resumed(&loaded, &other, &mut page)), CampaignError::OtherCampaign { line: 2 });
     let fewer = request(3, Shard::default());
-    assert_eq!(refused(resumed(&loaded, &fewer, &mut page)), CampaignError::MoreStored { stored: 4, requested: 3 });
+    assert_eq!(
+        refused(resumed(&loaded, &fewer, &mut page)),
+        CampaignError::MoreStored { stored: 4, requested: 3 }
+    );
     let changed = load(&[&SHORT as &[&str], &["controller.saturation=9 V"]].concat());
     assert_eq!(refused(resumed(&changed, &requested, &mut page)), CampaignError::OtherCampaign { line: 2 });
     assert_eq!(page.text, before);

@@ -3,8 +3,8 @@
 use super::Drive;
 use crate::range::RequiredRange;
 use crate::scalar::{Dependence, Dual};
-use crate::simulation::interface::{SimulationError, SimulationSettings, Status};
 use crate::simulation::derivatives::DIRECTIONS;
+use crate::simulation::interface::{SimulationError, SimulationSettings, Status};
 use crate::simulation::slot::Slot;
 use crate::simulation::task::Queue;
 use crate::simulation::vector::can_drive;

@@ -8,7 +8,7 @@ use phea_qft::design::{Design, DesignProblem, DesignStatus, name_of};
 use phea_qft::loop_shaping::{Aim, DescentOptions, Samples, SearchProblem, Shaping, descend};
 use phea_qft::verification::SpecificationMargin;
 
-use super::shaping::{RESERVE_DB, StepShaping, AimedStepLimits};
+use super::shaping::{AimedStepLimits, RESERVE_DB, StepShaping};
 use super::starts::SearchReach;
 use super::{AimedSteps, LedSearch, NEARLY_DB, StepRoom, with_rig};
 use crate::audit::audit_request;
@@ -122,7 +122,8 @@ impl<'a> LedDesign<'a> {
         watch: Watch<'_>,
     ) -> Result<Option<BegunDesign<'a>>, DesignError> {
         let structures = (start.structure.clone(), start.prefilter.clone());
-        let shaping = Shaping::new(structures.0, structures.1, project_design.options.objective, self.samples.clone())?;
+        let shaping =
+            Shaping::new(structures.0, structures.1, project_design.options.objective, self.samples.clone())?;
         let aimed_limits = AimedStepLimits {
             linear: self.room.of(self.aimed.aim.step_limits(self.required)),
             with_rig: with_rig(self.required),
@@ -274,7 +275,8 @@ impl<'a> LedDesign<'a> {
         let design = Design { status, ..start.clone() };
         let moved = design.moved(shaping, free_numbers.to_vec(), audit, &project_design.options);
         let found = (self.aimed.given, &self.problem);
-        let mut found = ProjectDesign::new(self.setup, found.0, found.1, moved, project_design.options.clone(), watch)?;
+        let mut found =
+            ProjectDesign::new(self.setup, found.0, found.1, moved, project_design.options.clone(), watch)?;
         let depth = match depth {
             AuditDepth::KnownPlants => CommandDepth::KnownPlants,
             AuditDepth::Whole => CommandDepth::Whole,
@@ -328,8 +330,9 @@ impl<'a> LedDesign<'a> {
         let satisfies_limits = |found: &AuditedStep| {
             found.verdict == 0 || found.least.as_ref().is_some_and(|least| least.margin_db >= -NEARLY_DB)
         };
-        let is_near =
-            |found: &AuditedStep| !self.aimed.added.is_empty() && satisfies_limits(found) && found.excess <= NEAR;
+        let is_near = |found: &AuditedStep| {
+            !self.aimed.added.is_empty() && satisfies_limits(found) && found.excess <= NEAR
+        };
         found.is_some_and(|found| found.is_reached() || is_near(found))
     }
 }

@@ -1,7 +1,7 @@
 //! Designs from which searches by steps begin.
 
 use phea_dynamics::portable;
-use phea_qft::design::{Design, NamedStructure, StructureEnding, SearchedStructure};
+use phea_qft::design::{Design, NamedStructure, SearchedStructure, StructureEnding};
 use phea_qft::loop_shaping::Structure;
 
 use super::SearchStarts;
@@ -57,7 +57,8 @@ impl LedDesign<'_> {
             SearchStarts::Nearest => (0, nearest),
             SearchStarts::Others => (nearest, STARTS),
         };
-        let others = others.into_iter().skip(skipped).take(most).map(|searched| begun_from(searched, project_design));
+        let others =
+            others.into_iter().skip(skipped).take(most).map(|searched| begun_from(searched, project_design));
         let others = others.map(|start| (start, SearchReach::Anywhere));
         let starts: Vec<(Design, SearchReach)> = match self.aimed.from {
             SearchStarts::Others => others.collect(),
@@ -72,10 +73,14 @@ impl LedDesign<'_> {
     /// The design. Before it, its neighbourhood, if its runs on the nonlinear rig miss by little;
     /// after it, if they miss, a faster loop with a slower prefilter: the loop suppresses the
     /// contribution of the rig to a step, and the prefilter shapes the rest.
-    fn own_starts(&self, project_design: &ProjectDesign) -> impl Iterator<Item = (Design, SearchReach)> + use<> {
+    fn own_starts(
+        &self,
+        project_design: &ProjectDesign,
+    ) -> impl Iterator<Item = (Design, SearchReach)> + use<> {
         let design = with_free_gain(project_design.design.clone(), project_design);
         let has_missed = !self.aimed.added.is_empty();
-        let beside = (has_missed && project_design.worst_run() <= NEAR).then(|| (design.clone(), SearchReach::Near));
+        let beside =
+            (has_missed && project_design.worst_run() <= NEAR).then(|| (design.clone(), SearchReach::Near));
         let settling_s = self.required.settling_time_s.filter(|_| has_missed);
         let faster = settling_s.zip(design.prefilter.as_ref()).and_then(|(time_s, prefilter)| {
             let band = 0.01 * self.required.band_percent;
@@ -89,7 +94,11 @@ impl LedDesign<'_> {
 
     /// Structures shorter than that of a design that satisfy the limits over frequency, or miss
     /// only those on the path to its step, the simplest first.
-    pub(super) fn simpler(&self, project_design: &ProjectDesign, run: &DesignRun) -> Result<Vec<Design>, DesignError> {
+    pub(super) fn simpler(
+        &self,
+        project_design: &ProjectDesign,
+        run: &DesignRun,
+    ) -> Result<Vec<Design>, DesignError> {
         let own = project_design.design.structure.order()?;
         let given = run.aimed.specifications.len() - run.aimed.design_limits.len();
         let leads = |specification: &usize| {
@@ -148,7 +157,10 @@ fn begun_from(searched: &SearchedStructure, project_design: &ProjectDesign) -> D
         *own = portable::ln(gain.clamp(least, greatest));
     }
     let structure = searched.structure.clone();
-    with_free_gain(Design { structure, prefilter, free_numbers, name: searched.name, ..design.clone() }, project_design)
+    with_free_gain(
+        Design { structure, prefilter, free_numbers, name: searched.name, ..design.clone() },
+        project_design,
+    )
 }
 
 /// Magnitude |G| of a design at the first crossover of its nominal loop.
@@ -186,7 +198,8 @@ fn with_free_gain(mut start: Design, project_design: &ProjectDesign) -> Design {
         && start.name == Some(NamedStructure::Proportional)
     {
         let [least, greatest] = prefilter.gain;
-        let most = limit_value(&project_design.limits, DesignLimitKind::PrefilterGain).unwrap_or(UNLIMITED_GAIN);
+        let most =
+            limit_value(&project_design.limits, DesignLimitKind::PrefilterGain).unwrap_or(UNLIMITED_GAIN);
         prefilter.gain = [least.min(1.0), greatest.max(most)];
         // a number that is not free has no place
         if least == greatest {

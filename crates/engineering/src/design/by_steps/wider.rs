@@ -3,7 +3,7 @@
 use phea_qft::loop_shaping::{Aim, Structure};
 use phea_qft::specification::Specification;
 
-use super::shaping::{RESERVE_DB, StepShaping, AimedStepLimits};
+use super::shaping::{AimedStepLimits, RESERVE_DB, StepShaping};
 use super::{AimedSteps, DesignError, led, with_rig};
 use crate::design::command_of_steps::ScenarioSteps;
 use crate::design::{DesignRun, ProjectDesign};
@@ -18,7 +18,9 @@ pub(in crate::design) fn last_step_search<'a>(
     aimed: AimedSteps<'a>,
     (run, project_design): (&DesignRun, &ProjectDesign),
 ) -> Result<Option<LastStepSearch<'a>>, DesignError> {
-    let (Some(search), Some(led)) = (&run.led, led(setup, aimed, (run, project_design))?) else { return Ok(None) };
+    let (Some(search), Some(led)) = (&run.led, led(setup, aimed, (run, project_design))?) else {
+        return Ok(None);
+    };
     let linear = search.room.of(aimed.aim.step_limits(led.required));
     let aimed_limits = AimedStepLimits { linear, with_rig: with_rig(led.required) };
     let added = (aimed_limits, aimed.added.to_vec());

@@ -79,7 +79,12 @@ impl ScenarioSteps {
             one.reference.steps.first().map_or(0.0, |first| one.reference.end_s - first.at_s)
         };
         let longest_s = scenarios.iter().map(lasts_s).fold(0.0, f64::max);
-        let required = project_design.designed.problem.in_time.iter().map(|one| SETTLING_TIMES * one.step_limits.horizon_s);
+        let required = project_design
+            .designed
+            .problem
+            .in_time
+            .iter()
+            .map(|one| SETTLING_TIMES * one.step_limits.horizon_s);
         Some(ScenarioSteps {
             scenarios,
             limit_v: fraction * rig.actuator.components().valve.nominal_voltage,

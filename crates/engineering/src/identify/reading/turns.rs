@@ -49,7 +49,7 @@ fn rate(points: &[(f64, f64)]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use phea_dynamics::portable;
-    use phea_dynamics::random::{uniform, stream};
+    use phea_dynamics::random::{stream, uniform};
 
     use super::turns;
 

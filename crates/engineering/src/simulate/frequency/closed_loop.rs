@@ -40,8 +40,8 @@ pub enum NoClosedLoop {
     Open,
 }
 
-/// Measures the response at these frequencies; ends before the first for which `continues` is false.
-/// The reason if there is no loop.
+/// Measures the response at these frequencies; ends before the first for which `continues` is
+/// false. The reason if there is no loop.
 pub(super) fn measured(
     setup: &Setup<'_>,
     rested: &RestedMachine,

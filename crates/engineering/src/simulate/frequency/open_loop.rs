@@ -9,7 +9,8 @@ use phea_machine::Control;
 use super::point::{RestingRig, finer, point, respond};
 use super::{FrequencyRequest, MachineResponse, RestedMachine, SimulateError, USUAL_AMPLITUDE, curve};
 
-/// Measures the response at these frequencies; ends before the first for which `continues` is false.
+/// Measures the response at these frequencies; ends before the first for which `continues` is
+/// false.
 pub(super) fn measured(
     rested: &RestedMachine,
     frequencies: &[f64],

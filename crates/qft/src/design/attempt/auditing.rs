@@ -10,8 +10,8 @@ use crate::design::counterexample::{
     unstable_plant, worst_over_rate_db,
 };
 use crate::family::{Family, UncertainFamily};
-use crate::plant_cache::PlantCache;
 use crate::loop_shaping::{Aim, Judgement};
+use crate::plant_cache::PlantCache;
 use crate::verification::{Audit, AuditEffort, AuditProblem, Verdict};
 
 /// Accuracy to which a relaxation is found, dB.

@@ -3,8 +3,8 @@
 use phea_dynamics::watch::Watch;
 
 use super::{Attempt, AttemptEnding, Leave, LoopDesignError, best_of};
-use crate::plant_cache::PlantCache;
 use crate::loop_shaping::SearchProblem;
+use crate::plant_cache::PlantCache;
 
 impl Attempt {
     /// Descends from the best of the starting points, and again with the violations of the sampled

@@ -5,9 +5,13 @@
 //! measure and reduced by the contribution of their zeros (Poisson and Jensen):
 //!
 //! ```text
-//! |S(s0)| <= exp(mean ln|S|) prod |s0 - p|/|s0 + conj p|                      p the unstable poles, where S = 0
-//! |T(s0)| <= exp(mean ln|T|) prod |s0 - z|/|s0 + conj z| e^(-Re(s0) T_d)      z the zeros, T_d the dead time
+//! |S(s0)| <= exp(m(ln|S|)) prod |s0 - p|/|s0 + conj p|                      p the unstable poles, where S = 0
+//! |T(s0)| <= exp(m(ln|T|)) prod |s0 - z|/|s0 + conj z| e^(-Re(s0) T_d)      z the zeros, T_d the dead time
+//! m(f) = (1/pi) integral of f(w) Re s0/|s0 - j w|^2 dw                      over the whole axis
 //! ```
+//!
+//! It contains Bode's integral of the sensitivity, and its extension by Freudenberg and Looze
+//! (1985).
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -115,8 +119,9 @@ fn left(
 /// unavoidable peak.
 pub(super) fn findings(ceilings: &Ceilings, candidates: &[PlantWithinLoop]) -> Vec<Finding> {
     let plane = ceilings.boundary.plane;
-    let fractions =
-        |at: Complex64| -> Vec<f64> { ceilings.boundary.cells.iter().map(|cell| fraction(at, *cell)).collect() };
+    let fractions = |at: Complex64| -> Vec<f64> {
+        ceilings.boundary.cells.iter().map(|cell| fraction(at, *cell)).collect()
+    };
     let points: Vec<(Spot, Vec<f64>)> = real_points(ceilings)
         .into_iter()
         .map(|at| (Spot { kind: LimitKind::Point, at }, fractions(at)))

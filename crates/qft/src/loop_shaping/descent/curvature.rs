@@ -46,7 +46,8 @@ impl Curvature {
         let expected = self.times(step);
         let before = dot(step, &expected);
         let seen = dot(step, change);
-        let fraction = if seen >= DAMPING * before { 1.0 } else { (1.0 - DAMPING) * before / (before - seen) };
+        let fraction =
+            if seen >= DAMPING * before { 1.0 } else { (1.0 - DAMPING) * before / (before - seen) };
         let mixed: Vec<f64> =
             change.iter().zip(&expected).map(|(y, b)| fraction * y + (1.0 - fraction) * b).collect();
         let along = dot(step, &mixed);

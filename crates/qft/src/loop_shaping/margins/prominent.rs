@@ -142,7 +142,7 @@ pub(crate) fn prominent(worst: MarginCandidate, mut others: Vec<MarginCandidate>
 
 #[cfg(test)]
 mod tests {
-    use phea_dynamics::random::{uniform, stream};
+    use phea_dynamics::random::{stream, uniform};
 
     use super::*;
 

@@ -73,7 +73,10 @@ pub enum RequirementOutcome {
 /// assert!(reached.settling.time_s().is_some_and(|time_s| (time_s - 0.126).abs() < 5e-4));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn check_upper(function: &TransferFunction, requirement: &UpperStepRequirement) -> Result<RequirementCheck, TimeDomainError> {
+pub fn check_upper(
+    function: &TransferFunction,
+    requirement: &UpperStepRequirement,
+) -> Result<RequirementCheck, TimeDomainError> {
     requirement.check()?;
     let UpperStepRequirement { overshoot_percent, settling_time_s, settling_band_percent } = *requirement;
     let required = RequiredResponse { overshoot_percent, settling_time_s, settling_band_percent };
@@ -100,7 +103,10 @@ pub fn check_upper(function: &TransferFunction, requirement: &UpperStepRequireme
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn check_lower(function: &TransferFunction, requirement: &LowerStepRequirement) -> Result<RequirementCheck, TimeDomainError> {
+pub fn check_lower(
+    function: &TransferFunction,
+    requirement: &LowerStepRequirement,
+) -> Result<RequirementCheck, TimeDomainError> {
     requirement.check()?;
     let LowerStepRequirement { settling_time_s, settling_band_percent } = *requirement;
     let required = RequiredResponse { overshoot_percent: 0.0, settling_time_s, settling_band_percent };
@@ -113,7 +119,8 @@ impl RequirementCheck {
         let beyond = |reached: f64, required: f64| {
             if reached <= required * (1.0 + TOLERANCE) + TOLERANCE * 1e-3 { 0.0 } else { reached - required }
         };
-        let overshoot_excess_percent = beyond(self.reached.overshoot_percent, self.required.overshoot_percent);
+        let overshoot_excess_percent =
+            beyond(self.reached.overshoot_percent, self.required.overshoot_percent);
         let settling_time_s = self.reached.settling.time_s().unwrap_or(f64::INFINITY);
         let settling_excess_s = beyond(settling_time_s, self.required.settling_time_s);
         if overshoot_excess_percent == 0.0 && settling_excess_s == 0.0 {

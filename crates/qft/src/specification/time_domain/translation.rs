@@ -7,7 +7,10 @@ use phea_dynamics::range::RequiredRange;
 use phea_dynamics::time_response::{SecondOrder, step_response};
 
 use super::check::{TOLERANCE, check_lower, check_upper};
-use super::{ExtraRoot, LowerStepRequirement, TimeDomainError, TimeDomainNumber, TrackingLimit, Translation, UpperStepRequirement};
+use super::{
+    ExtraRoot, LowerStepRequirement, TimeDomainError, TimeDomainNumber, TrackingLimit, Translation,
+    UpperStepRequirement,
+};
 
 /// The upper tracking limit for a requirement in time.
 ///
@@ -51,11 +54,16 @@ pub fn tracking_upper(
     let model = match translation {
         Translation::Rule(rule) => {
             same_band(rule.band_percent(), requirement.settling_band_percent)?;
-            SecondOrder::from_overshoot_and_settling_rule(requirement.overshoot_percent, requirement.settling_time_s, rule)?
+            SecondOrder::from_overshoot_and_settling_rule(
+                requirement.overshoot_percent,
+                requirement.settling_time_s,
+                rule,
+            )?
         }
         Translation::Exact => {
             let model = |natural: f64| {
-                let ratio = damping_ratio(requirement.overshoot_percent / 100.0, extra_zero.fraction(natural));
+                let ratio =
+                    damping_ratio(requirement.overshoot_percent / 100.0, extra_zero.fraction(natural));
                 SecondOrder::new(natural, ratio)
             };
             let settled = |natural: f64| upper_settles(requirement, extra_zero, &model(natural)?);
@@ -107,7 +115,8 @@ pub fn tracking_lower(
         Translation::Exact => {
             let settled = |natural: f64| {
                 let function = with_pole(&SecondOrder::new(natural, 1.0)?, extra_pole.place(natural))?;
-                Ok(deviation(&function, requirement.settling_time_s)? <= requirement.settling_band_percent / 100.0)
+                Ok(deviation(&function, requirement.settling_time_s)?
+                    <= requirement.settling_band_percent / 100.0)
             };
             SecondOrder::new(least_natural_frequency(requirement.settling_time_s, extra_pole, settled)?, 1.0)?
         }
@@ -221,7 +230,8 @@ fn damping_ratio(overshoot: f64, fraction: f64) -> f64 {
     // above this ratio there is no overshoot: critically damped, or the slow pole coincides with
     // the zero
     let most = if fraction <= 1.0 { 1.0 } else { (fraction + 1.0 / fraction) / 2.0 };
-    let overshoots = |ratio: f64| first_extreme(ratio, fraction).map_or(0.0, |time| extreme(ratio, fraction, time));
+    let overshoots =
+        |ratio: f64| first_extreme(ratio, fraction).map_or(0.0, |time| extreme(ratio, fraction, time));
     if overshoot == 0.0 {
         return most;
     }

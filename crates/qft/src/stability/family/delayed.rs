@@ -103,7 +103,8 @@ impl StabilityAudit<'_> {
         order.retain(|(value, _)| value.is_finite());
         sort_by_number(&mut order, |one| -one.0);
         let nearest = order.iter().take(RANKED).filter_map(|(_, plant)| values(plant));
-        let mut ranked: Vec<(f64, Vec<f64>)> = nearest.map(|fractions| (worst(&fractions), fractions)).collect();
+        let mut ranked: Vec<(f64, Vec<f64>)> =
+            nearest.map(|fractions| (worst(&fractions), fractions)).collect();
         ranked.retain(|(value, _)| !value.is_nan());
         sort_by_number(&mut ranked, |one| -one.0);
         let mut chosen: Vec<Vec<f64>> = values(&margin.plant).into_iter().collect();

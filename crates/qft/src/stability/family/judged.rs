@@ -91,7 +91,8 @@ impl StabilitySearch<'_> {
         let Family::Uncertain(family) = around.family else { return None };
         let mut fractions = self.fractions;
         for &badness in self.searched {
-            let mut objective = |fractions: &[f64]| around.badness_at(cache, badness, family.values(fractions));
+            let mut objective =
+                |fractions: &[f64]| around.badness_at(cache, badness, family.values(fractions));
             (fractions, _) = climb_by(self.first_step, &fractions, &mut objective);
         }
         let values = family.values(&fractions);

@@ -1,6 +1,6 @@
 //! Stability of the family, and its proof, in the answer of an audit.
 
-use phea_qft::proof::{Certificate, Proof, ClaimStatus};
+use phea_qft::proof::{Certificate, ClaimStatus, Proof};
 use phea_qft::verification::{Evidence, SearchedInfinity, StabilityFinding, Verdict};
 
 use crate::answer::{Answer, OrReason};
@@ -109,5 +109,7 @@ pub(super) fn proven(view: &ProjectAudit, proof: &Proof, claim_status: &ClaimSta
         ClaimStatus::Refuted => Some(false),
         ClaimStatus::NotProven(_) => None,
     };
-    ProvenAnswer { proven: OrReason::new(proven, why_not_proven(view, proof, claim_status).unwrap_or_default()) }
+    ProvenAnswer {
+        proven: OrReason::new(proven, why_not_proven(view, proof, claim_status).unwrap_or_default()),
+    }
 }

@@ -12,7 +12,7 @@ pub(super) struct CampaignRequirementAnswer {
     specification: usize,
     /// Requirement in words.
     requirement: String,
-    #[answer(flatten)]
+    /// Required step response.
     required: RequiredStepAnswer,
     /// Number of runs all of whose steps satisfy it.
     satisfied: OrReason<usize>,
@@ -31,7 +31,7 @@ pub(super) struct CampaignRequirementAnswer {
 struct FurthestRunAnswer {
     /// Index of the run, from 0.
     run: u64,
-    #[answer(flatten)]
+    /// Worst step of the run.
     reached: WorstStepAnswer,
 }
 

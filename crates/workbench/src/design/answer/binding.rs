@@ -3,7 +3,7 @@
 use phea_qft::design::DesignStatus;
 use phea_qft::verification::SpecificationMargin;
 
-use crate::answer::{Answer, words};
+use crate::answer::{Answer, OrReason};
 use crate::design::ProjectDesign;
 use crate::design::words::searched_limit_name;
 use crate::plant_names::NamedPlant;
@@ -12,36 +12,19 @@ use crate::project::SpecificationKind;
 /// Limit over frequency that binds or conflicts, at the frequency where it does.
 #[derive(Answer)]
 pub(super) struct BindingLimitAnswer {
-    /// Index among the limits of the search, from 0: the specifications over frequency in the order
-    /// of the file, then the limits of `[design]`.
+    /// Number of the limit of the search, from 1: the specifications over frequency in the order of
+    /// the file, then the limits of `[design]`.
     specification: usize,
     /// Name of the limit.
     name: String,
-    /// Kind of the specification; empty for a limit of `[design]`.
-    kind: BindingLimitKind,
+    /// Kind of the specification.
+    kind: OrReason<SpecificationKind>,
     /// Frequency of the margin; zero or `inf` for a limit towards it.
     frequency_rad_per_s: f64,
     /// Margin; negative if the limit is exceeded.
     margin_db: f64,
     /// Plant with the margin.
     plant: NamedPlant,
-}
-
-/// Kind of a specification, or an empty text.
-#[derive(Answer)]
-enum BindingLimitKind {
-    Specification(SpecificationKind),
-    Design(KindOfDesignLimit),
-}
-
-/// Kind of a limit of `[design]`.
-enum KindOfDesignLimit {
-    None,
-}
-
-words! {
-    /// Empty text, since a limit of `[design]` has no kind.
-    KindOfDesignLimit { None => "" }
 }
 
 /// The limits that bind.
@@ -60,12 +43,12 @@ fn row(view: &ProjectDesign, margin: &SpecificationMargin) -> BindingLimitAnswer
     let (side, specification) = (&view.designed, margin.specification);
     let known = side.problem.specifications.get(specification);
     BindingLimitAnswer {
-        specification,
+        specification: specification + 1,
         name: searched_limit_name(view, view.searched_limit(specification)),
-        kind: known.map_or(BindingLimitKind::Design(KindOfDesignLimit::None), |known| {
-            let closed_loop = known.requirement.closed_loop();
-            BindingLimitKind::Specification(SpecificationKind::ClosedLoop(closed_loop))
-        }),
+        kind: OrReason::new(
+            known.map(|known| SpecificationKind::ClosedLoop(known.requirement.closed_loop())),
+            "a limit of [design] is not a specification",
+        ),
         frequency_rad_per_s: margin.frequency_rad_per_s,
         margin_db: margin.margin_db,
         plant: side.view.names.named(&margin.plant),

@@ -6,7 +6,7 @@ use phea_dynamics::portable::magnitude;
 use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
 
 use super::super::{
-    ComparedImpedance, RequiredImpedance, Linearization, PortView, WITHIN_PERCENT, no_closed_impedance_words,
+    ComparedImpedance, Linearization, PortView, RequiredImpedance, WITHIN_PERCENT, no_closed_impedance_words,
 };
 use super::{FactorsAnswer, factors};
 use crate::answer::{Answer, OrReason, words};
@@ -113,9 +113,11 @@ struct VirtualImpedancePointAnswer {
     /// Magnitude of the impedance of the loop.
     #[answer(key = QuantityName::moving("achieved", &DAMPING))]
     achieved_magnitude: f64,
-    /// Required impedance, in the unit of the magnitude.
+    /// Required impedance, real and imaginary part.
+    #[answer(key = QuantityName::moving("required_complex", &DAMPING))]
     required: Complex64,
-    /// Impedance -F_e/(s X_L) of the loop, in the unit of the magnitude.
+    /// Impedance -F_e/(s X_L) of the loop, real and imaginary part.
+    #[answer(key = QuantityName::moving("achieved_complex", &DAMPING))]
     achieved: Complex64,
 }
 

@@ -1,6 +1,6 @@
 //! A controller with all its results.
 
-use phea_qft::proof::{Proof, ClaimStatus};
+use phea_qft::proof::{ClaimStatus, Proof};
 use phea_qft::verification::Verdict;
 
 use super::steps::{StepProperty, steps};
@@ -72,7 +72,9 @@ impl Side<'_> {
         // steps in time are searched for, and are not part of a proof
         let searched = self.view?.in_time.iter().any(|finding| finding.requirement.follows);
         let each = proof.specifications.iter().map(|own| &own.claim_status);
-        Some(std::iter::once(&proof.stability).chain(each).all(|one| !searched && *one == ClaimStatus::Proven))
+        Some(
+            std::iter::once(&proof.stability).chain(each).all(|one| !searched && *one == ClaimStatus::Proven),
+        )
     }
 
     /// True if every specification is met.

@@ -10,9 +10,7 @@ use super::side::Side;
 use crate::answer::significant;
 use crate::audit::{TimeOutcome, WorstStep};
 use crate::plant_names::{plant_text, plant_words};
-use crate::simulate::{
-    Metrics, ReachedStep, TimeRequirement, StepLimits, Unmeasured, cause_words, concerns,
-};
+use crate::simulate::{Metrics, ReachedStep, StepLimits, TimeRequirement, Unmeasured, cause_words, concerns};
 use crate::trial::{Trial, TrialRun, have_one_name, run_name};
 
 /// Property of a step.

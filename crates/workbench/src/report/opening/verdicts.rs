@@ -23,7 +23,8 @@ type Rows = Vec<Vec<Cell>>;
 /// The table; empty without a controller.
 pub(super) fn table(contents: &Contents<'_>, sides: &[Side<'_>]) -> Table {
     let names = sides.iter().map(|side| format!("{} controller", side.name));
-    let mut table = Table::grouped_by("judged", std::iter::once("what was required".to_string()).chain(names));
+    let mut table =
+        Table::grouped_by("judged", std::iter::once("what was required".to_string()).chain(names));
     let groups = [
         ("The whole family of plants", of_family(contents, sides)),
         ("The nonlinear simulation", of_machine(contents, sides)),

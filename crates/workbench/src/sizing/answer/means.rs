@@ -1,7 +1,7 @@
 //! The stiffness of a hose by other means for programs.
 
 use super::super::{OtherMeans, OtherMeansError, SizedGas, SizedPipe, SizedSpring, SizedValve};
-use crate::answer::Answer;
+use crate::answer::{Answer, OrReason};
 
 /// Other means with the stiffness of a hose.
 #[derive(Answer)]
@@ -14,86 +14,55 @@ pub(super) struct OtherMeansAnswer {
     /// `cylinder.dead_length` is not stated.
     actuator_length_m: Option<f64>,
     /// Pipe to each chamber.
-    pipe: SizedPipeAnswer,
+    pipe: OrReason<SizedPipeAnswer>,
     /// Equal accumulators at both chambers.
-    gas: SizedGasAnswer,
+    gas: OrReason<SizedGasAnswer>,
     /// Spring between force sensor and load.
-    spring: SizedSpringAnswer,
-    #[answer(flatten)]
-    valves: SizedValvesAnswer,
+    spring: OrReason<SizedSpringAnswer>,
+    /// Laminar valve between the chambers: of the rig as declared, and of its chambers without
+    /// lines.
+    valves: OrReason<[SizedValveAnswer; 2]>,
 }
 
-/// Pipe to each chamber, or the reason why there is none.
+/// Pipe to each chamber.
 #[derive(Answer)]
-enum SizedPipeAnswer {
-    Sized {
-        /// Bore of the pipe, that of the hose.
-        bore_m: f64,
-        /// Length of each pipe.
-        length_m: f64,
-        /// Volume of the oil in both pipes.
-        oil_m3: f64,
-    },
-    Absent {
-        /// Reason for which there is none.
-        reason: String,
-    },
+struct SizedPipeAnswer {
+    /// Bore of the pipe, that of the hose.
+    bore_m: f64,
+    /// Length of each pipe.
+    length_m: f64,
+    /// Volume of the oil in both pipes.
+    oil_m3: f64,
 }
 
-/// Equal accumulators at both chambers, or the reason why there are none.
+/// Equal accumulators at both chambers.
 #[derive(Answer)]
-enum SizedGasAnswer {
-    Sized {
-        /// Gas volume of each accumulator at its precharge.
-        gas_volume_m3: f64,
-        /// Gauge pressure of the precharge.
-        precharge_pressure_pa: f64,
-        /// Ratio of the supply pressure to the precharge, both absolute.
-        pressure_ratio: f64,
-        /// Softest and stiffest of the least hydraulic stiffnesses over the stroke, within the
-        /// range of forces.
-        stiffness_n_per_m: [f64; 2],
-    },
-    Absent {
-        /// Reason for which there are none.
-        reason: String,
-    },
+struct SizedGasAnswer {
+    /// Gas volume of each accumulator at its precharge.
+    gas_volume_m3: f64,
+    /// Gauge pressure of the precharge.
+    precharge_pressure_pa: f64,
+    /// Ratio of the supply pressure to the precharge, both absolute.
+    pressure_ratio: f64,
+    /// Softest and stiffest of the least hydraulic stiffnesses over the stroke, within the
+    /// range of forces.
+    stiffness_n_per_m: [f64; 2],
 }
 
-/// Spring between force sensor and load, or the reason why there is none.
+/// Spring between force sensor and load.
 #[derive(Answer)]
-enum SizedSpringAnswer {
-    Sized {
-        /// Stiffness of the spring.
-        stiffness_n_per_m: f64,
-        /// Travel to either side under the stall force.
-        travel_m: f64,
-        /// Length of both coil springs in their housing, at rest; null if the coils are not known.
-        installed_length_m: Option<f64>,
-        /// Mass of both coil springs; null if the coils are not known.
-        mass_kg: Option<f64>,
-        /// Retracted length of the actuator with the spring, from mount to mount; null if it is not
-        /// known.
-        actuator_length_m: Option<f64>,
-    },
-    Absent {
-        /// Reason for which there is none.
-        reason: String,
-    },
-}
-
-/// Laminar valve between the chambers, or the reason why there is none.
-#[derive(Answer)]
-enum SizedValvesAnswer {
-    Sized {
-        /// Laminar valve between the chambers: of the rig as declared, and of its chambers without
-        /// lines.
-        valves: [SizedValveAnswer; 2],
-    },
-    Absent {
-        /// Reason for which there is no valve.
-        valves_reason: String,
-    },
+struct SizedSpringAnswer {
+    /// Stiffness of the spring.
+    stiffness_n_per_m: f64,
+    /// Travel to either side under the stall force.
+    travel_m: f64,
+    /// Length of both coil springs in their housing, at rest; null if the coils are not known.
+    installed_length_m: Option<f64>,
+    /// Mass of both coil springs; null if the coils are not known.
+    mass_kg: Option<f64>,
+    /// Retracted length of the actuator with the spring, from mount to mount; null if it is not
+    /// known.
+    actuator_length_m: Option<f64>,
 }
 
 /// Laminar valve between the chambers, which damps the mode of the load cell.
@@ -118,48 +87,41 @@ pub(super) fn other_means(found: &OtherMeans) -> OtherMeansAnswer {
         stiffness_n_per_m: found.stiffness,
         chambers_n_per_m: found.chambers,
         actuator_length_m: found.actuator_length,
-        pipe: pipe(&found.pipe),
-        gas: gas(&found.gas),
-        spring: spring(&found.spring),
-        valves: match &found.valves {
-            Ok(valves) => SizedValvesAnswer::Sized { valves: valves.map(valve) },
-            Err(reason) => SizedValvesAnswer::Absent { valves_reason: reason.to_string() },
-        },
+        pipe: or_reason(&found.pipe, pipe),
+        gas: or_reason(&found.gas, gas),
+        spring: or_reason(&found.spring, spring),
+        valves: or_reason(&found.valves, |valves| valves.map(valve)),
     }
 }
 
-fn pipe(found: &Result<SizedPipe, OtherMeansError>) -> SizedPipeAnswer {
-    match found {
-        Ok(pipe) => SizedPipeAnswer::Sized { bore_m: pipe.bore, length_m: pipe.length, oil_m3: pipe.oil },
-        Err(reason) => SizedPipeAnswer::Absent { reason: reason.to_string() },
+fn or_reason<Found, Of>(
+    found: &Result<Found, OtherMeansError>,
+    answer: impl FnOnce(&Found) -> Of,
+) -> OrReason<Of> {
+    OrReason(found.as_ref().map(answer).map_err(OtherMeansError::to_string))
+}
+
+fn pipe(pipe: &SizedPipe) -> SizedPipeAnswer {
+    SizedPipeAnswer { bore_m: pipe.bore, length_m: pipe.length, oil_m3: pipe.oil }
+}
+
+fn gas(gas: &SizedGas) -> SizedGasAnswer {
+    SizedGasAnswer {
+        gas_volume_m3: gas.volume,
+        precharge_pressure_pa: gas.precharge,
+        pressure_ratio: gas.pressure_ratio,
+        stiffness_n_per_m: gas.stiffness,
     }
 }
 
-fn gas(found: &Result<SizedGas, OtherMeansError>) -> SizedGasAnswer {
-    match found {
-        Ok(gas) => SizedGasAnswer::Sized {
-            gas_volume_m3: gas.volume,
-            precharge_pressure_pa: gas.precharge,
-            pressure_ratio: gas.pressure_ratio,
-            stiffness_n_per_m: gas.stiffness,
-        },
-        Err(reason) => SizedGasAnswer::Absent { reason: reason.to_string() },
-    }
-}
-
-fn spring(found: &Result<SizedSpring, OtherMeansError>) -> SizedSpringAnswer {
-    match found {
-        Ok(spring) => {
-            let coil = spring.coil.as_ref().ok();
-            SizedSpringAnswer::Sized {
-                stiffness_n_per_m: spring.stiffness,
-                travel_m: spring.travel,
-                installed_length_m: coil.map(|coil| coil.installed_length),
-                mass_kg: coil.map(|coil| coil.mass),
-                actuator_length_m: spring.actuator_length,
-            }
-        }
-        Err(reason) => SizedSpringAnswer::Absent { reason: reason.to_string() },
+fn spring(spring: &SizedSpring) -> SizedSpringAnswer {
+    let coil = spring.coil.as_ref().ok();
+    SizedSpringAnswer {
+        stiffness_n_per_m: spring.stiffness,
+        travel_m: spring.travel,
+        installed_length_m: coil.map(|coil| coil.installed_length),
+        mass_kg: coil.map(|coil| coil.mass),
+        actuator_length_m: spring.actuator_length,
     }
 }
 
