@@ -57,7 +57,6 @@ const FIRST: [Stage; 5] = [
 ];
 
 const TESTS: [Stage; 1] = [("tests", tests)];
-
 /// Stages that run one after the other in parallel with the tests, which do not occupy all
 /// processors; their output is shown at the end.
 const ASIDE: [Stage; 4] =
@@ -83,8 +82,7 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
     }
     let target = target(root);
     let path = target.join("aside.log");
-    let log = std::fs::create_dir_all(&target).and_then(|()| File::create(&path));
-    let log = match log {
+    let log = match std::fs::create_dir_all(&target).and_then(|()| File::create(&path)) {
         Ok(log) => log,
         Err(error) => {
             eprintln!("cannot write {}: {error}", path.display());
@@ -250,8 +248,7 @@ fn wasm32(runner: &Runner) -> Outcome {
     }
 }
 
-/// Solves fifty rigs of each family with both phea and CVODE. The other tests of the package that
-/// links CVODE run with those of all packages.
+/// Solves fifty rigs of each family with both phea and CVODE.
 fn peers(runner: &Runner) -> Outcome {
     match tools::sundials() {
         Ok(()) => runner.cargo("test --workspace --test random_rigs -- 50"),
@@ -264,8 +261,7 @@ fn mutation(runner: &Runner) -> Outcome {
     runner.cargo("test --workspace --test all -- --ignored mutation::")
 }
 
-/// Tests, before a release, that take too long for every commit: all of them, so that one run shows
-/// everything that must be mended.
+/// Tests, before a release, that take too long for every commit.
 fn soak(runner: &Runner) -> Outcome {
     // A hundred kills of campaigns on one, two and four threads, and two gigabytes of rows: the
     // losses and the speed are printed.

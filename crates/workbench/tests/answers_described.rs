@@ -6,6 +6,8 @@ use std::path::Path;
 use crate::answer_schema::{schema, validated};
 use crate::run_command::{HOSE, json};
 use phea_workbench::command::{Request, answers_schema};
+use phea_workbench::quantity::MotionKind;
+use phea_workbench::simulate::Metric;
 use serde_json::{Value, json as value};
 
 fn verified() -> Value {
@@ -114,6 +116,17 @@ fn every_interval_of_a_reading_by_hand_is_that_of_a_reading() {
     };
     let (intervals, readings) = (keys("HandIntervalsAnswer"), keys("HandReadingsAnswer"));
     assert!(!intervals.is_empty() && intervals.is_subset(&readings), "{intervals:?}");
+}
+
+#[test]
+fn every_metric_of_an_event_is_in_its_answer() {
+    let properties = schema()["definitions"]["EventMetricsAnswer"]["properties"].as_object().unwrap();
+    for motion in [MotionKind::Linear, MotionKind::Rotary] {
+        for metric in Metric::ALL {
+            let key = metric.quantity().text(motion);
+            assert!(properties.contains_key(key.as_ref()), "{key}");
+        }
+    }
 }
 
 #[test]

@@ -13,9 +13,9 @@ const FOLDERS: [&str; 5] =
 const MESSAGE: &str = "is a sentence: return a fact, and word it in the workbench";
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
-    let is_below = |path: &str| FOLDERS.iter().any(|folder| path.starts_with(folder));
     let is_of_keys = |path: &str| path.ends_with("keys.rs") || path.ends_with("/checks.rs");
-    let is_below = |file: &&RustFile| is_below(&file.path) && !is_of_keys(&file.path);
+    let is_in = |path: &str| FOLDERS.iter().any(|folder| path.starts_with(folder));
+    let is_below = |file: &&RustFile| is_in(&file.path) && !is_of_keys(&file.path);
     repository.rust_files.iter().filter(is_below).flat_map(sentences).collect()
 }
 

@@ -92,7 +92,16 @@ mod tests {
     use super::*;
 
     fn key(dimension: &'static Dimension, range: AcceptedRange) -> Key {
-        Key { name: "a", dimension, range, default: None, of_motion: false, of_load: false, doc: "" }
+        Key {
+            name: "a",
+            dimension,
+            range,
+            usual: None,
+            default: None,
+            of_motion: false,
+            of_load: false,
+            doc: "",
+        }
     }
 
     fn range(distribution: Distribution, minimum: f64, maximum: f64) -> VariedRange {

@@ -12,8 +12,9 @@ use super::simulate::{
     RunStatus, Window,
 };
 
-/// Metrics in the order of a row, whose columns have fixed positions.
-pub const ROW_METRICS: [Metric; 9] = [
+/// Metrics in the order of a row: a new metric is added at the end, since the columns of stored
+/// rows have fixed positions.
+pub const ROW_METRICS: [Metric; Metric::ALL.len()] = [
     Metric::Overshoot,
     Metric::RiseTime,
     Metric::SettlingTime,
@@ -346,6 +347,12 @@ mod tests {
             times_s: vec![0.0, 1.5, 3.0],
             units: Units::default(),
         }
+    }
+
+    #[test]
+    fn a_row_has_every_metric_once() {
+        assert_eq!(ROW_METRICS.len(), Metric::ALL.len());
+        assert!(Metric::ALL.iter().all(|metric| ROW_METRICS.contains(metric)));
     }
 
     /// Values of a row as metrics, in the order of a row.

@@ -102,6 +102,15 @@ impl Metric {
     }
 }
 
+// `PerMetric` holds the value of a metric at the place of its variant
+const _: () = {
+    let mut place = 0;
+    while place < Metric::ALL.len() {
+        assert!(Metric::ALL[place] as usize == place);
+        place += 1;
+    }
+};
+
 /// A value for each metric.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PerMetric<T>([T; Metric::ALL.len()]);

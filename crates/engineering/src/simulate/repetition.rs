@@ -248,6 +248,12 @@ fn magnitude(metric: Metric, window: &Window, both: [&Metrics; 2], values: [f64;
             let peaks = both.iter().flat_map(|one| [one.disturbance_peak_n, one.tracking_error_peak_n]);
             peaks.flatten().fold(own.max(step), f64::max)
         }
-        _ => own,
+        Metric::RiseTime
+        | Metric::SettlingTime
+        | Metric::DisturbancePeak
+        | Metric::TrackingErrorPeak
+        | Metric::ForcePeak
+        | Metric::ControlPeak
+        | Metric::ControlRms => own,
     }
 }
