@@ -94,6 +94,19 @@ def neck(rig, pressure, flow, gas_pressure, theta):
     return [flow_rate, pressure_rate], theta_rate
 
 
+def to_tank(rig, pressure):
+    """Flow from a chamber to the tank through its relief valve, less that through its check valve, m3/s."""
+    if not hasattr(rig, "port_valves"):
+        return 0.0
+    cracking, relief, check_pressure, check, width = rig.port_valves
+
+    def opened(excess):
+        return 0.0 if excess <= -width else excess if excess >= width else (excess + width) ** 2 / (4 * width)
+
+    above = pressure - rig.tank_pressure
+    return relief * opened(above - cracking) - check * opened(-above - check_pressure)
+
+
 def rates(time, state, rig, reference):
     scales = magnitudes_of(rig)
     state = state * scales
@@ -115,6 +128,7 @@ def rates(time, state, rig, reference):
         filters = [low_pass * (pressure_a - ratio * pressure_b - low), high_pass * (low - slow)]
     command = min(max(wanted, -rig.saturation), rig.saturation)
     into_a, into_b = flows(rig, spool, pressure_a, pressure_b)
+    into_a, into_b = into_a - to_tank(rig, pressure_a), into_b - to_tank(rig, pressure_b)
     if has_neck:
         flow_a, gas_a, flow_b, gas_b = state[10:14].tolist()
         into_a, into_b = into_a - flow_a, into_b - flow_b

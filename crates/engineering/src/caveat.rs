@@ -16,6 +16,7 @@ pub(crate) mod overlap;
 
 use phea_hydraulics::cross_port::Restrictor;
 use phea_hydraulics::operating_point::Condition;
+use phea_hydraulics::port_valves::{PortValveKind, ValveAtPoint, ValveOpening};
 
 use beyond_reach::beyond_reach;
 use fed::{fed_in_loop, feed_forward, impedance, measured_without_pressures, pressures_in_loop};
@@ -54,7 +55,7 @@ impl Caveat {
 pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
     let of_rig =
         supply(setup).into_iter().chain(accumulator(setup)).chain(cross_port(setup)).chain(neck(setup));
-    let of_rig = of_rig.chain(adjustment(setup)).chain(gas_valve(setup));
+    let of_rig = of_rig.chain(adjustment(setup)).chain(gas_valve(setup)).chain(port_valves(setup));
     let of_rig = apart_from_lines(setup).chain(of_rig).chain(progression(setup)).chain(segments(setup));
     let of_valve = leakage_humps(setup).into_iter().chain(overlap(setup)).map(Caveat::noted);
     of_valve
@@ -309,6 +310,30 @@ fn cross_port(setup: &Setup<'_>) -> Option<Caveat> {
     let conductance = found.conductance;
     let effect = UncountedEffect::CrossPortOrifice { drop, transition_pressure, conductance, has_range };
     Some(Caveat { effect, unproven: !has_range })
+}
+
+/// Caveats for relief and check valves that are open or within their transition at the operating
+/// point, and for shut relief valves that open within the pressure of the supply.
+fn port_valves(setup: &Setup<'_>) -> Vec<Caveat> {
+    let Some(rig) = setup.rig().ok().filter(|_| !is_measured(setup.project)) else { return Vec::new() };
+    let components = rig.actuator.components();
+    let pressures = [rig.point.pressure_a, rig.point.pressure_b];
+    let sides = components.outward.port_valves.iter().zip(pressures).zip(['A', 'B']);
+    let at_point = sides.flat_map(|((valves, pressure), side)| {
+        let of = valves.map_or(Vec::new(), |one| one.at_point(pressure, components.supply.tank_pressure));
+        of.into_iter().map(move |valve| (side, valve))
+    });
+    let is_concerned = |valve: &ValveAtPoint| match (valve.opening, valve.kind) {
+        (ValveOpening::Shut, PortValveKind::Check) => false,
+        (ValveOpening::Shut, PortValveKind::Relief) => valve.opens_at < components.supply.pressure,
+        (ValveOpening::InTransition | ValveOpening::Open, _) => true,
+    };
+    let concerned = at_point.filter(|(_, valve)| is_concerned(valve));
+    let caveat = |(side, valve): (char, ValveAtPoint)| {
+        let unproven = valve.opening == ValveOpening::InTransition;
+        Caveat { effect: UncountedEffect::PortValve { side, valve }, unproven }
+    };
+    concerned.map(caveat).collect()
 }
 
 /// Path of the transition pressure of an orifice between the chambers.

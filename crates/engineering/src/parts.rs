@@ -1,5 +1,5 @@
 //! Cost and mass of the parts that make a rig yield: lines, accumulators, the spring or
-//! transmission, and the valve between the chambers. All data come from the project or a catalogue.
+//! transmission, and the valves at the chambers. All data come from the project or a catalogue.
 
 use std::f64::consts::PI;
 
@@ -7,8 +7,8 @@ use phea_hydraulics::line::Line;
 use phea_hydraulics::series::{SeriesElement, Transmission};
 
 use crate::project::{
-    Component, DeclaredActuator, DeclaredLine, DeclaredPipe, DeclaredSeries, ElasticWall, LineCost, PartCost,
-    Project,
+    ChamberValve, Component, DeclaredActuator, DeclaredLine, DeclaredPipe, DeclaredSeries, ElasticWall,
+    LineCost, PartCost, Project,
 };
 use crate::quantity::{Currency, Price};
 use crate::rig::{Rig, series_coil};
@@ -35,8 +35,13 @@ pub enum PartKind {
     Pipe,
     /// An accumulator at a chamber.
     Accumulator,
-    /// The valve between the chambers.
-    CrossPort,
+    /// A valve at the chambers.
+    ChamberValve {
+        /// Table that declares it.
+        table: &'static str,
+        /// Names of one such valve and of several.
+        names: [&'static str; 2],
+    },
     /// The spring between force sensor and load.
     SeriesSpring,
     /// Both cylinders of a transmission between force sensor and load.
@@ -108,7 +113,7 @@ impl PartsCounted {
 /// All statements of a price or a mass.
 fn stated(declared: &DeclaredActuator) -> Vec<PartCost> {
     let (mut lines, mut others) = (vec![&declared.line.a, &declared.line.b], vec![declared.valve.cost]);
-    others.extend(declared.cross_port.as_ref().map(|port| port.cost));
+    others.extend(declared.chamber_valves().into_iter().map(|valve| valve.cost));
     match &declared.series {
         Some(DeclaredSeries::Spring(spring)) => others.push(spring.cost),
         Some(DeclaredSeries::Transmission(transmission)) => {
@@ -143,7 +148,9 @@ pub fn parts(declared: &DeclaredActuator, rig: &Rig) -> Vec<CostedPart> {
     found.extend(sides.iter().filter_map(|(side, line)| {
         Some(whole(PartKind::Accumulator, Some(*side), line.accumulator.as_ref()?.cost))
     }));
-    found.extend(declared.cross_port.iter().map(|port| whole(PartKind::CrossPort, None, port.cost)));
+    found.extend(declared.chamber_valves().into_iter().map(|ChamberValve { table, names, side, cost }| {
+        whole(PartKind::ChamberValve { table, names }, side, cost)
+    }));
     match &declared.series {
         Some(DeclaredSeries::Spring(spring)) => {
             let coils = series_coil(declared, rig).map(|pair| pair.mass);

@@ -10,6 +10,7 @@ mod lever;
 mod mechanics;
 mod motor;
 mod pen;
+mod port_valves;
 mod symbols;
 mod test_circuit;
 
@@ -45,8 +46,19 @@ pub struct LineSymbol {
     pub kind: LineKind,
     /// Accumulator at the chamber, if there is one.
     pub accumulator: Option<AccumulatorSymbol>,
+    /// True if a relief valve joins the chamber to the tank.
+    pub has_relief: bool,
+    /// True if a check valve joins the tank to the chamber.
+    pub has_check: bool,
     /// Text rows, such as `hose 12.7 mm` and `1.5 m`; [`LINE_ROWS`] at most.
     pub rows: Vec<String>,
+}
+
+impl LineSymbol {
+    /// Line from the valve to a chamber without further parts.
+    pub fn new(kind: LineKind, rows: Vec<String>) -> LineSymbol {
+        LineSymbol { kind, accumulator: None, has_relief: false, has_check: false, rows }
+    }
 }
 
 /// Largest number of text rows of a line.

@@ -311,6 +311,8 @@ fn circuits() {
         let line = |r: &mut Random| LineSymbol {
             kind: if r.unit() < 0.5 { LineKind::Hose } else { LineKind::Pipe },
             accumulator: r.maybe(|r| accumulators[r.below(3)]),
+            has_relief: r.unit() < 0.5,
+            has_check: r.unit() < 0.5,
             rows: r.many(9, Random::name),
         };
         let controller = |r: &mut Random| ControllerSymbol {

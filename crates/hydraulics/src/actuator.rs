@@ -12,6 +12,7 @@ use crate::friction::Friction;
 use crate::line::{DynamicLine, Line, LineError, LineModel, StiffeningMember};
 use crate::linkage::Linkage;
 use crate::load::Load;
+use crate::outward_flow::OutwardFlow;
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 use crate::power_unit::PowerUnit;
 use crate::series::SeriesElement;
@@ -40,6 +41,8 @@ pub struct Components<S = f64> {
     pub gas: [Option<ChamberGas<S>>; 2],
     /// Valve between the chambers, at the cylinder.
     pub cross_port: Option<CrossPort<S>>,
+    /// Parts that pass oil from the chambers to the tank.
+    pub outward: OutwardFlow<S>,
     /// The cylinder.
     pub cylinder: Cylinder<S>,
     /// Friction of the cylinder.
@@ -182,6 +185,7 @@ impl Actuator {
             problems.component(path, gas.map_or(Vec::new(), |gas| gas.problems()));
         }
         problems.component("cross_port", components.cross_port.map_or(Vec::new(), |port| port.problems()));
+        problems.all(components.outward.problems());
         problems.component("cylinder", cylinder.problems());
         problems.component("cylinder.friction", friction.problems());
         problems.component("force_sensor", force_sensor.problems());

@@ -7,6 +7,7 @@ mod keys;
 mod motor_keys;
 
 pub use keys::{DeclaredCylinder, DeclaredStage};
+pub(crate) use motor_keys::CASE_LEAKAGE_KEY;
 pub use motor_keys::DeclaredMotor;
 
 use phea_dynamics::scalar::{Parameters, Scalar};
@@ -41,9 +42,6 @@ pub struct Cylinder<S = f64> {
     /// Laminar leakage across the piston per pressure difference, m3/(s Pa); if absent, the piston
     /// does not leak.
     pub internal_leakage: Option<S>,
-    /// Laminar leakage of each chamber to the tank per pressure above tank pressure, m3/(s Pa), as
-    /// of a motor through its case; if absent, nothing leaks to the tank.
-    pub external_leakage: Option<S>,
     /// Contact at both ends of the stroke. If absent, the ends are only reported.
     pub end_stops: Option<Contact<S>>,
 }
@@ -91,9 +89,6 @@ impl Cylinder {
         if let Some(leakage) = self.internal_leakage {
             problems.key(keys::INTERNAL_LEAKAGE_KEY, leakage);
         }
-        if let Some(leakage) = self.external_leakage {
-            problems.key_as("external_leakage", motor_keys::CASE_LEAKAGE_KEY, leakage);
-        }
         if let Some(contact) = self.end_stops {
             problems.component("end_stops", contact.problems());
         }
@@ -123,7 +118,7 @@ impl<S: Scalar> Cylinder<S> {
 phea_dynamics::parameters! {
     Cylinder {
         area_a, area_b, stroke, moving_mass, dead_volume_a, dead_volume_b, internal_leakage,
-        external_leakage, end_stops,
+        end_stops,
     }
 }
 
@@ -157,7 +152,7 @@ pub fn annulus_area<S: Scalar>(piston: S, rod: S) -> S {
 /// use phea_hydraulics::stroke::ActuatorStroke;
 /// let cylinder = Cylinder {
 ///     area_a: 2e-3, area_b: 1e-3, stroke: ActuatorStroke::Limited(0.5), moving_mass: 10.0, dead_volume_a: 1e-5,
-///     dead_volume_b: 0.0, internal_leakage: None, external_leakage: None, end_stops: None,
+///     dead_volume_b: 0.0, internal_leakage: None, end_stops: None,
 /// };
 /// assert_eq!(chamber_volumes(&cylinder, 0.25), [5.1e-4, 2.5e-4]);
 /// ```

@@ -63,6 +63,7 @@ use crate::friction::MovingFriction;
 use crate::line::{DynamicLine, Segments};
 use crate::linkage::Linkage;
 use crate::load::Load;
+use crate::outward_flow::OutwardFlow;
 use crate::series::MovingSeries;
 use crate::servovalve::{Servovalve, Supply};
 use equations::constant;
@@ -108,6 +109,7 @@ pub struct Machine<S = f64> {
     gas_pressure_limits: [Option<S>; 2],
     moving_setting: bool,
     cross_port: Option<CrossPort<S>>,
+    outward: Option<OutwardFlow<S>>,
     lines: [DynamicLine<S>; 2],
     friction: MovingFriction<S>,
     sensor_stiffness: S,
@@ -162,6 +164,7 @@ impl Machine {
             gas_pressure_limits: components.gas.map(|gas| gas?.pressure_limit()),
             moving_setting: options.moving_setting,
             cross_port: components.cross_port,
+            outward: components.outward.if_present(),
             lines: lines.unwrap_or([none; 2]),
             friction,
             sensor_stiffness: components.force_sensor.stiffness,
@@ -265,7 +268,7 @@ impl Machine {
 phea_dynamics::parameters! {
     Machine {
         valve, supply, power_unit, cylinder, chambers, gas, gas_pressure_limits, moving_setting: kept,
-        cross_port, lines, friction, sensor_stiffness, series, linkage, load, velocity_gain,
+        cross_port, outward, lines, friction, sensor_stiffness, series, linkage, load, velocity_gain,
         pressure_ratio, external_force: kept, vapour_pressure, layout: kept,
     }
 }

@@ -75,6 +75,9 @@ pub enum ParameterRequirement {
     /// Supply pressure.
     #[error("above the tank pressure")]
     AboveTankPressure,
+    /// Transition of a relief valve.
+    #[error("at most the cracking pressure: a relief valve is shut at the pressure of the tank")]
+    AtMostCrackingPressure,
     /// Lap of a spool.
     #[error("less than the full travel of the spool")]
     WithinTravel,

@@ -14,6 +14,7 @@ use crate::friction::{Friction, LuGre, Stribeck};
 use crate::line::{Hose, Line, LineModel, Pipe, PipeWall, Stiffening};
 use crate::linear::LinearParameters;
 use crate::load::Load;
+use crate::outward_flow::OutwardFlow;
 use crate::power_unit::PowerUnit;
 use crate::servovalve::{
     Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
@@ -68,7 +69,6 @@ pub fn cylinder() -> Cylinder {
         dead_volume_a: 0.0,
         dead_volume_b: 0.0,
         internal_leakage: None,
-        external_leakage: None,
         end_stops: None,
     }
 }
@@ -127,6 +127,7 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
         line_models: [LineModel::Lumped; 2],
         gas: [None; 2],
         cross_port: None,
+        outward: OutwardFlow::default(),
         cylinder: cylinder(),
         friction: Friction::Viscous { viscous: 100.0 },
         force_sensor: ForceSensor { stiffness: 2e7 },

@@ -64,7 +64,7 @@ pub struct ChamberCompliance<S = f64> {
 /// # use phea_hydraulics::{cylinder::*, line::*, stiffness::*, stroke::ActuatorStroke};
 /// # let areas = [annulus_area(0.05, 0.022); 2];
 /// # let cylinder = Cylinder { area_a: areas[0], area_b: areas[1], stroke: ActuatorStroke::Limited(0.5), moving_mass: 13.1,
-/// #     dead_volume_a: 0.0, dead_volume_b: 0.0, internal_leakage: None, external_leakage: None, end_stops: None };
+/// #     dead_volume_a: 0.0, dead_volume_b: 0.0, internal_leakage: None, end_stops: None };
 /// # let dynamic_stiffening = Stiffening { nominal: 5.0, minimum: 4.0, maximum: 5.0 };
 /// # let hose = Hose { bore: 12.7e-3, volumetric_expansion: 1.56e-5, operating_expansion: 7.774e-6,
 /// #     expansion_slope: 2.236e-12, dynamic_stiffening };

@@ -26,6 +26,7 @@ use crate::actuator::{Actuator, Components};
 use crate::force_sensor;
 use crate::line::StiffeningMember;
 use crate::operating_point::{OperatingPoint, hydraulic_force};
+use crate::outward_flow::OutwardFlow;
 use crate::servovalve::{ChamberFlows, Servovalve, Supply, chamber_flows};
 use crate::stiffness::{ChamberCompliance, compliance_at};
 
@@ -44,8 +45,8 @@ pub struct TwoPressureModel<S = f64> {
     pub viscous_friction: S,
     /// Sensor stiffness K_S, N/m.
     pub sensor_stiffness: S,
-    /// Conductance from each chamber to the tank, m3/(s Pa); `None` without external leakage.
-    pub external_leakage: Option<S>,
+    /// Flow from each chamber to the tank; `None` without such flow.
+    pub outward: Option<OutwardFlow<S>>,
 }
 
 /// States of the model. Units: V, V/s, Pa, m, m/s.
@@ -90,7 +91,7 @@ impl<S: Copy> TwoPressureState<S> {
 
 phea_dynamics::parameters! {
     TwoPressureModel {
-        valve, supply, chambers, moving_mass, viscous_friction, sensor_stiffness, external_leakage,
+        valve, supply, chambers, moving_mass, viscous_friction, sensor_stiffness, outward,
     }
 }
 
@@ -109,8 +110,14 @@ impl<S: Scalar> TwoPressureModel<S> {
             moving_mass: components.cylinder.moving_mass,
             viscous_friction,
             sensor_stiffness: components.force_sensor.stiffness,
-            external_leakage: components.cylinder.external_leakage,
+            outward: components.outward.if_present(),
         }
+    }
+
+    /// Slopes of the flows from both chambers to the tank over their pressures in Pa, m3/(s Pa);
+    /// `None` without such flow.
+    pub fn outward_slopes(&self, pressures: [S; 2]) -> Option<[S; 2]> {
+        Some(self.outward?.slopes(pressures, self.supply.tank_pressure))
     }
 }
 
@@ -176,11 +183,8 @@ pub fn rates<S: Scalar>(
     let [compliance_a, compliance_b] = compliance_at(chambers, position);
     let ChamberFlows { into_a, into_b } =
         chamber_flows(&model.valve, &model.supply, spool, pressure_a, pressure_b);
-    let leaving = |pressure: S| {
-        let above_tank = pressure - model.supply.tank_pressure;
-        model.external_leakage.map_or(S::from(0.0), |conductance| conductance * above_tank)
-    };
-    let [out_of_a, out_of_b] = [leaving(pressure_a), leaving(pressure_b)];
+    let outward = model.outward.map(|out| out.flows([pressure_a, pressure_b], model.supply.tank_pressure));
+    let [out_of_a, out_of_b] = outward.unwrap_or([S::from(0.0); 2]);
     let natural_frequency = model.valve.natural_frequency;
     let [area_a, area_b] = chambers.areas_at(position);
     let pushing = hydraulic_force([area_a, area_b], [pressure_a, pressure_b]);

@@ -25,6 +25,7 @@ mod operating_point;
 mod passive_parts;
 mod plant;
 mod plant_in_motion;
+mod port_valves;
 mod pressure_feedback;
 mod rich_machines;
 mod series;

@@ -16,6 +16,7 @@ use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Accumulator, Machine, MachineOptions, PowerUnit, StartValues};
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
+use phea_hydraulics::outward_flow::OutwardFlow;
 use phea_hydraulics::plant::{LinearLoad, LinearPlant};
 use phea_hydraulics::reference_rig::{benchmark_components, components, hose_line, leaking};
 use phea_hydraulics::servovalve::SpoolDirection;
@@ -35,13 +36,13 @@ fn cylinder_rig() -> Components {
     let contact = Contact { stiffness: 2e8, relative_damping: 0.2 };
     let cylinder = Cylinder {
         internal_leakage: Some(2e-13),
-        external_leakage: Some(1e-13),
         dead_volume_a: 2e-5,
         dead_volume_b: 3e-5,
         end_stops: Some(contact),
         ..rig.cylinder
     };
-    Components { cylinder, line_a: hose_line(), line_b: hose_line(), ..rig }
+    let outward = OutwardFlow { external_leakage: Some(1e-13), ..OutwardFlow::default() };
+    Components { cylinder, outward, line_a: hose_line(), line_b: hose_line(), ..rig }
 }
 
 /// Motor equivalent to the cylinder with its rod on a lever: effects of load and friction at the
@@ -211,9 +212,9 @@ fn a_leaking_motor_rests_at_its_operating_point() {
     for external_leakage in [1e-14, 1e-12, 2e-11] {
         for internal_leakage in [None, Some(3e-13)] {
             let rig = on_lever(cylinder_rig());
-            let cylinder =
-                Cylinder { external_leakage: Some(external_leakage), internal_leakage, ..rig.cylinder };
-            let actuator = Actuator::new(Components { cylinder, ..rig }).unwrap();
+            let cylinder = Cylinder { internal_leakage, ..rig.cylinder };
+            let outward = OutwardFlow { external_leakage: Some(external_leakage), ..OutwardFlow::default() };
+            let actuator = Actuator::new(Components { cylinder, outward, ..rig }).unwrap();
             let machine = Machine::new(&actuator, &MachineOptions::default()).unwrap();
             for condition in [Condition::Command(0.2), Condition::Load(SteadyLoad::Force(50.0))] {
                 let point = operating_point(&actuator, 3.0, condition).unwrap();
@@ -236,11 +237,13 @@ fn turning_machines() -> Vec<(&'static str, Machine)> {
         Some(ChamberGas::from(Accumulator { gas_volume, precharge_pressure, polytropic_exponent }))
     };
     let at_chambers = |rig| Components { gas: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
-    let seeping = Cylinder { external_leakage: Some(2e-12), ..rig.cylinder };
-    let vane = Components { cylinder: seeping, ..rig };
+    let vane = Components {
+        outward: OutwardFlow { external_leakage: Some(2e-12), ..OutwardFlow::default() },
+        ..rig
+    };
     // a motor of this kind discharges on one side the flow that it takes in on the other
-    let turning = Cylinder { area_b: seeping.area_a, stroke: ActuatorStroke::Unlimited, ..seeping };
-    let motor = Components { cylinder: turning, ..rig };
+    let turning = Cylinder { area_b: rig.cylinder.area_a, stroke: ActuatorStroke::Unlimited, ..rig.cylinder };
+    let motor = Components { cylinder: turning, ..vane };
     let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_exponent: 1.4 });
     let aerated = Components { fluid: Fluid { entrained_air: air, ..motor.fluid }, ..motor };
     vec![

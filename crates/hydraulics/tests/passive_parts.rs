@@ -26,6 +26,7 @@ use phea_hydraulics::line::Line;
 use phea_hydraulics::linkage::{LinkageGeometry, PivotTriangle};
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{ENERGY_ACCOUNTS, Machine, MachineOptions, OIL_ACCOUNTS, StartValues};
+use phea_hydraulics::outward_flow::OutwardFlow;
 use phea_hydraulics::reference_rig::{components, cylinder};
 use phea_hydraulics::servovalve::{Edges, Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -442,12 +443,13 @@ fn a_motor_is_passive_at_its_shaft() {
             dead_volume_b,
             // each separately, so that none hides the energy that another supplies
             internal_leakage: (number % 3 == 1).then(|| spread(5e-12, 5e-11)),
-            external_leakage: (number % 3 == 2).then(|| spread(5e-12, 5e-11)),
             ..rig.cylinder
         };
+        let external_leakage = (number % 3 == 2).then(|| spread(5e-12, 5e-11));
         let stiffness = spread(5e3, 5e4);
         let rig = Components {
             cylinder,
+            outward: OutwardFlow { external_leakage, ..OutwardFlow::default() },
             supply: Supply { pressure: REST + 1e5, tank_pressure: REST },
             force_sensor: ForceSensor { stiffness },
             ..rig

@@ -17,7 +17,9 @@ use phea_hydraulics::linear::linear_model_coefficients;
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{InitialCondition, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Balance, Condition, OperatingPoint, Steady, operating_point};
+use phea_hydraulics::outward_flow::OutwardFlow;
 use phea_hydraulics::plant::{LinearLoad, LinearPlant};
+use phea_hydraulics::port_valves::{PortValves, TankValve};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, nominal_plant, pipe_line};
 use phea_hydraulics::servovalve::{LeakageModel, Servovalve, SpoolDirection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -39,16 +41,32 @@ struct Drawn {
     load: LinearLoad,
 }
 
-/// Some leak to the tank, some rotate without limit, and some are telescopic, mostly within a
-/// transition.
+/// Some rotate without limit, and some are telescopic, mostly within a transition.
 fn turning(cylinder: Cylinder, number: u64) -> Cylinder {
-    let external_leakage = (number % 5 == 3).then_some(1e-14 * pow(1e3, number as f64 / 300.0));
     let stroke = match number % 9 {
         4 => ActuatorStroke::Unlimited,
         2 | 7 => ActuatorStroke::Telescopic(telescope(number)),
         _ => cylinder.stroke,
     };
-    Cylinder { external_leakage, stroke, ..cylinder }
+    Cylinder { stroke, ..cylinder }
+}
+
+/// Relief and check valves of both chambers, shut, open or within their transition at rest.
+pub(super) fn port_valves(number: u64) -> [Option<PortValves>; 2] {
+    let mut state = stream(77, number);
+    [0, 1].map(|_| {
+        let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
+        let relief = TankValve { cracking_pressure: spread(5e5, 80e5), conductance: spread(1e-13, 1e-10) };
+        let check = TankValve { cracking_pressure: spread(1e4, 5e5), conductance: spread(1e-13, 1e-10) };
+        let transition_pressure = spread(1e4, relief.cracking_pressure);
+        match spread(1.0, 16.0) {
+            drawn if drawn < 4.0 => None,
+            drawn if drawn < 8.0 => {
+                Some(PortValves { relief: Some(relief), check: None, transition_pressure })
+            }
+            _ => Some(PortValves { relief: Some(relief), check: Some(check), transition_pressure }),
+        }
+    })
 }
 
 /// Three stages with long transitions.
@@ -80,7 +98,10 @@ fn drawn(number: u64) -> Drawn {
         force_sensor: ForceSensor { stiffness: spread(1e6, 1e8) },
         ..reference
     };
-    let parts = Components { cylinder: turning(parts.cylinder, number), ..parts };
+    // every fifth leaks to the tank, and some have relief and check valves
+    let external_leakage = (number % 5 == 3).then_some(1e-14 * pow(1e3, number as f64 / 300.0));
+    let outward = OutwardFlow { external_leakage, port_valves: port_valves(number) };
+    let parts = Components { cylinder: turning(parts.cylinder, number), outward, ..parts };
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
     let leakage = if number % 4 == 1 { 0.0 } else { spread(1e-14, 1e-10) };
     let relative_damping = spread(0.01, 1.0);
@@ -152,7 +173,13 @@ pub(super) fn plant_at_rest(
     };
     let [pressure_a, pressure_b] = ports;
     let point = OperatingPoint { pressure_a, pressure_b, ..point_at(position, state) };
+    let model = TwoPressureModel { outward: None, ..model };
     let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Extending);
+    // at the cylinder, and not at the ports of the valve
+    let outward = components.outward.if_present();
+    let outward = outward.map(|outward| outward.slopes(pressures, stated.tank_pressure));
+    let chambers = parameters.chambers.leaking(outward);
+    let parameters = TwoPressureLinearParameters { chambers, ..parameters };
     let supply = yielding(actuator, state[0], ports, supplied);
     let (across, dynamic_feedback) = components.cross_admittance(pressures);
     let gas = components.gas_branches(pressures);

@@ -23,12 +23,13 @@ use phea_hydraulics::line::{
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Chambers, InitialCondition, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Condition, operating_point};
+use phea_hydraulics::outward_flow::OutwardFlow;
 use phea_hydraulics::plant::{ChamberDynamics, LineChambers, LinearLoad, LinearPlant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leaking, pipe_line};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::commanded::{Commanded, chamber_gas, cross_port, power_unit, without_branches};
-use super::plant::plant_at_rest;
+use super::plant::{plant_at_rest, port_valves};
 
 pub(super) fn model(number: u64, time: f64) -> LineModel {
     let friction =
@@ -81,8 +82,9 @@ pub(super) fn plant_with_lines(
     let (oil, gas) = (oil.compliance(position, pressures), parts.gas_compliance(pressures));
     let own = without_branches(parts, pressures, [0, 1].map(|side| oil[side] + gas[side].unwrap_or(0.0)));
     let ChamberDynamics::TwoPressures { flow_pressures, .. } = plant.chambers else { unreachable!() };
-    let outward = parts.cylinder.external_leakage.unwrap_or(0.0);
-    let leaking = flow_pressures.map(|whole| outward / whole);
+    let outward = parts.outward.if_present();
+    let outward = outward.map_or([0.0; 2], |outward| outward.slopes(pressures, parts.supply.tank_pressure));
+    let leaking = [outward[0] / flow_pressures[0], outward[1] / flow_pressures[1]];
     (plant, LineChambers { lines, chambers: own, lumped, leaking })
 }
 
@@ -122,7 +124,8 @@ fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, 
     };
     // every fifth leaks to the tank as well, from the chamber side of its lines
     let external_leakage = (number % 5 == 3).then_some(1e-14 * pow(1e3, number as f64 / 108.0));
-    let parts = Components { cylinder: Cylinder { external_leakage, ..parts.cylinder }, ..parts };
+    let parts =
+        Components { outward: OutwardFlow { external_leakage, port_valves: port_valves(number) }, ..parts };
     (parts, models)
 }
 

@@ -13,6 +13,8 @@ use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity};
 use phea_hydraulics::line::{LaminarFriction, LineModel};
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Accumulator, Machine, MachineOptions, PowerUnit, PumpLimited};
+use phea_hydraulics::outward_flow::OutwardFlow;
+use phea_hydraulics::port_valves::{PortValves, TankValve};
 use phea_hydraulics::reference_rig::{
     benchmark_components, components, cylinder, hose_line, leaking, pipe_line,
 };
@@ -106,11 +108,22 @@ pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
     let at_one = Components { gas: [None, Some(gas.into())], ..by_volume };
     let port =
         |restrictor, capacity| Components { cross_port: Some(CrossPort { restrictor, capacity }), ..rig };
+    let valves = PortValves {
+        relief: Some(TankValve { cracking_pressure: 30e5, conductance: 2e-11 }),
+        check: Some(TankValve { cracking_pressure: 1e5, conductance: 2e-10 }),
+        transition_pressure: 1e5,
+    };
+    let relieved = |rig: Components, port_valves| Components {
+        outward: OutwardFlow { port_valves, ..OutwardFlow::default() },
+        ..rig
+    };
     let orifice = Restrictor::Orifice { flow_coefficient: 2e-9, transition_pressure: 1e4 };
     let laminar = Restrictor::Laminar { conductance: 1e-11 };
     let mut machines = vec![
         ("a laminar valve between the chambers", of(port(laminar, None), with(pump()))),
         ("an orifice between them", of(port(orifice, None), with(PowerUnit::Constant))),
+        ("relief and check valves", of(relieved(rig, [Some(valves); 2]), with(pump()))),
+        ("valves at a chamber behind a line", of(relieved(by_volume, [None, Some(valves)]), segments)),
         ("laminar feedback", of(port(laminar, Some(3e-13)), with(pump()))),
         ("feedback behind lines", of(port(orifice, Some(3e-13)), segments)),
         ("gas with heat", of(heated(rig, [Some(0.02), None], open), with(charged_pump(40e5, 1.4)))),

@@ -20,6 +20,7 @@ use phea_hydraulics::linkage::Linkage;
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{InitialCondition, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Condition, operating_point};
+use phea_hydraulics::outward_flow::OutwardFlow;
 use phea_hydraulics::plant::{
     LineChambers, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, PressureFeedback, SeriesOutput,
 };
@@ -31,7 +32,7 @@ use phea_hydraulics::stroke::{ActuatorStroke, PistonStage, Telescope};
 
 use super::commanded::{amplitudes, cross_port, power_unit, signal_of, slopes};
 use super::linkage::{STROKE, linkages};
-use super::plant::{plant_at_rest, telescope};
+use super::plant::{plant_at_rest, port_valves, telescope};
 use super::plant_in_motion::{model, plant_with_lines};
 use super::series::element;
 use super::transmission::transmission;
@@ -39,7 +40,7 @@ use super::transmission::transmission;
 const RIGS: u64 = 200;
 
 /// Parts by name, each with the later parts with which no rig combines it.
-const PARTS: [(&str, &[&str]); 30] = [
+const PARTS: [(&str, &[&str]); 31] = [
     ("polytropic gas", &[]),
     ("gas with heat", &[]),
     ("neck", &[]),
@@ -64,6 +65,7 @@ const PARTS: [(&str, &[&str]); 30] = [
     ("motor", &[]),
     ("leakage across the piston", &[]),
     ("leakage to the tank", &[]),
+    ("port valves", &[]),
     ("pump", &[]),
     ("air", &[]),
     ("feed-forward", &[]),
@@ -167,15 +169,8 @@ fn actuator(draw: &mut Draw, number: u64, stroke: f64, motor: bool) -> Component
         (false, false) => ActuatorStroke::Limited(stroke),
     };
     Components {
-        cylinder: Cylinder {
-            area_a,
-            area_b,
-            stroke,
-            moving_mass,
-            external_leakage,
-            internal_leakage,
-            ..cylinder()
-        },
+        cylinder: Cylinder { area_a, area_b, stroke, moving_mass, internal_leakage, ..cylinder() },
+        outward: OutwardFlow { external_leakage, ..OutwardFlow::default() },
         friction: Friction::Viscous { viscous },
         force_sensor: ForceSensor { stiffness },
         ..components(
@@ -270,6 +265,8 @@ fn parts(draw: &mut Draw, number: u64, kinds: &[Linkage; 4]) -> (Components, [Dr
     let cross_port = cross_port(number);
     draw.parts.extend(cross_port.iter().map(name_of));
     let series = if motor { None } else { series(draw, number) };
+    let port_valves = if number.is_multiple_of(3) { port_valves(number) } else { [None; 2] };
+    draw.parts.extend(port_valves.iter().any(Option::is_some).then_some("port valves"));
     let mut of_gas = [Draw::new(91, number), Draw::new(92, number)];
     let gas = of_gas.each_mut().map(gas);
     let rig = Components {
@@ -278,6 +275,7 @@ fn parts(draw: &mut Draw, number: u64, kinds: &[Linkage; 4]) -> (Components, [Dr
         line_b,
         gas,
         cross_port,
+        outward: OutwardFlow { port_valves, ..rig.outward },
         series,
         linkage,
         power_unit: power_unit(number),

@@ -5,7 +5,9 @@ use super::{
     DeclaredFriction, DeclaredLines, DeclaredLinkage, DeclaredMotor, DeclaredSeries, DeclaredSupply,
     DeclaredVelocitySensor, Key, Load, Motions, TableNumber, Valve, Visitor, plain,
 };
+use phea_hydraulics::port_valves::DeclaredPortValves;
 use phea_quantity::MotionKind;
+use phea_table::PartCost;
 
 /// Hydraulic actuator and its load.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,6 +26,8 @@ pub struct DeclaredActuator<S = f64> {
     pub line: DeclaredLines<S>,
     /// Valve between the chambers, if there is one.
     pub cross_port: Option<DeclaredCrossPort<S>>,
+    /// Relief and check valves between the chambers and the tank, if there are any.
+    pub port_valves: Option<DeclaredPortValves<S>>,
     /// Load cell.
     pub force_sensor: DeclaredForceSensor<S>,
     /// Sensor of the load velocity; if absent, the true velocity is known immediately.
@@ -36,13 +40,27 @@ pub struct DeclaredActuator<S = f64> {
     pub load: Load<S>,
 }
 
+/// Valve at the chambers with its cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChamberValve {
+    /// Table that declares it.
+    pub table: &'static str,
+    /// Names of one such valve and of several.
+    pub names: [&'static str; 2],
+    /// Chamber of the valve, `A` or `B`; `None` for a valve of both.
+    pub side: Option<&'static str>,
+    /// Cost and mass.
+    pub cost: PartCost,
+}
+
 impl DeclaredActuator {
     /// Required tables of an actuator, in addition to one of [`DeclaredActuator::MOVING`].
     pub(crate) const REQUIRED: [&'static str; 5] = ["fluid", "supply", "valve", "line", "force_sensor"];
     /// Tables of which exactly one describes the moving part.
     pub(crate) const MOVING: [&'static str; 2] = ["cylinder", "motor"];
     /// Optional tables.
-    const OPTIONAL: [&'static str; 5] = ["cross_port", "velocity_sensor", "series", "linkage", "load"];
+    const OPTIONAL: [&'static str; 6] =
+        ["cross_port", "port_valves", "velocity_sensor", "series", "linkage", "load"];
 
     /// All tables with their names.
     pub(crate) fn tables() -> impl Iterator<Item = &'static str> + Clone {
@@ -59,6 +77,8 @@ impl<S: TableNumber> DeclaredActuator<S> {
         required(plain("line", "From the valve to each chamber."), &mut self.line, DeclaredLines::visit, v);
         let k = plain("cross_port", "A valve between the chambers.");
         v.table(k, &mut self.cross_port, DeclaredCrossPort::visit);
+        let k = plain("port_valves", "Relief and check valves between each chamber and the tank.");
+        v.table(k, &mut self.port_valves, DeclaredPortValves::visit);
         required(
             plain("force_sensor", "The load cell."),
             &mut self.force_sensor,
@@ -169,6 +189,25 @@ impl DeclaredActuator {
 }
 
 impl DeclaredActuator {
+    /// Valves at the chambers, in the order of their tables.
+    pub fn chamber_valves(&self) -> Vec<ChamberValve> {
+        let cross_port = self.cross_port.iter().map(|port| ChamberValve {
+            table: "cross_port",
+            names: ["cross-port valve", "cross-port valves"],
+            side: None,
+            cost: port.cost,
+        });
+        let sides = self.port_valves.iter().flat_map(|valves| [("A", valves.a), ("B", valves.b)]);
+        let port_valves = sides.filter(|(_, valves)| !valves.is_absent());
+        let port_valves = port_valves.map(|(side, valves)| ChamberValve {
+            table: "port_valves",
+            names: ["port valve", "port valves"],
+            side: Some(side),
+            cost: valves.cost,
+        });
+        cross_port.chain(port_valves).collect()
+    }
+
     /// Adjustments of the accumulators at chambers A and B.
     pub fn adjustments(&self) -> [Option<DeclaredAdjustment>; 2] {
         [&self.line.a, &self.line.b].map(|line| line.accumulator.as_ref()?.adjustment)

@@ -62,7 +62,7 @@ mod validate;
 mod verification;
 mod written_units;
 
-pub use actuator::DeclaredActuator;
+pub use actuator::{ChamberValve, DeclaredActuator};
 pub use alternative::*;
 pub use bench::*;
 pub use campaign::*;

@@ -64,6 +64,7 @@ pub(crate) fn sentence(effect: &UncountedEffect, units: &Units) -> String {
         Effect::CrossPortOrifice { drop, transition_pressure, conductance, has_range } => {
             valve::cross_port_orifice(*drop, *transition_pressure, *conductance, *has_range)
         }
+        Effect::PortValve { side, valve } => valve::port_valve(*side, valve, units),
         Effect::DynamicPressureFeedback => valve::DYNAMIC_PRESSURE_FEEDBACK.to_string(),
         Effect::LeakageHumps { command, greatest, least } => {
             valve::leakage_humps(*command, *greatest, *least)

@@ -3,7 +3,7 @@
 
 mod accumulator;
 mod answer;
-mod cross_port;
+mod chamber_valves;
 mod document;
 mod dynamics;
 mod flow;

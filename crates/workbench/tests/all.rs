@@ -67,6 +67,7 @@ mod other_means;
 mod output_names;
 mod parts;
 mod plant_of_verdicts;
+mod port_valves;
 mod predicted_step;
 mod prefilter_gain;
 mod pressure_feedback;

@@ -56,6 +56,24 @@ fn a_reference_beyond_the_stall_force_is_warned_of() {
     assert!(warnings(&family, &[])[0].contains("at a supply of 50 bar the piston stalls at 7.917 kN"));
 }
 
+/// A relief valve limits the force before the piston stalls: to what the fully open servovalve
+/// holds against it.
+#[test]
+fn a_reference_beyond_the_relief_valves_is_warned_of() {
+    let at = |force: &str| with_scenario(&format!("reference = {{ at = \"1 s\", force = \"{force}\" }}"));
+    let valves = "port_valves={ cracking_pressure = \"50 bar\", override = \"0.1 bar\", flow = \"20 L/min\", transition_pressure = \"0.1 bar\" }";
+    // ORIGIN: analytic, 1583.4 mm2 at 50 bar: 7.917 kN, less what the other chamber holds; at most
+    // 0.1 bar more
+    assert_eq!(warnings(&at("7.8 kN"), &[valves]), Vec::<String>::new());
+    let beyond = &warnings(&at("8 kN"), &[valves])[0];
+    let expected =
+        "the reference goes to 8 kN at 1 s, and the relief valve that opens at 50 bar holds it to 7.9";
+    assert!(beyond.starts_with(expected), "{beyond}");
+    let one = "port_valves.b={ cracking_pressure = \"50 bar\", override = \"0.1 bar\", flow = \"20 L/min\" }";
+    assert_eq!(warnings(&at("8 kN"), &[one]), Vec::<String>::new());
+    assert_eq!(warnings(&at("-8 kN"), &[one]).len(), 1);
+}
+
 #[test]
 fn the_capacity_of_the_sensor_and_the_stroke_are_warned_of() {
     let reference = with_scenario("reference = { at = \"1 s\", force = \"4 kN\" }");

@@ -183,6 +183,26 @@ fn valves_between_the_chambers_follow() {
     follows_the_rig(&loaded(&equal));
 }
 
+/// Relief and check valves: shut, within their transition and open over the region, alike or not at
+/// both chambers.
+#[test]
+fn relief_and_check_valves_follow() {
+    let region =
+        [("operating_point.load_force", [-3000.0, 1000.0, 3500.0]), ("supply.pressure", [65e5, 70e5, 80e5])];
+    let numbers = [
+        ("port_valves.cracking_pressure", [30e5, 40e5, 50e5]),
+        ("port_valves.override", [4e5, 5e5, 9e5]),
+        ("port_valves.flow", [1e-6, 2e-6, 4e-6]),
+        ("port_valves.transition_pressure", [1e4, 2e4, 2e5]),
+    ];
+    let both = "[port_valves]\ncracking_pressure = \"40 bar\"\noverride = \"5 bar\"\nflow = \"2 mL/s\"\ncheck_valve_pressure = \"0.5 bar\"\ntransition_pressure = \"0.2 bar\"\n";
+    follows_the_rig(&loaded(&text(&ranges(&[&region[..], &numbers[..2]].concat()), both, "")));
+    follows_the_rig(&loaded(&text(&ranges(&[&region[..1], &numbers[2..]].concat()), both, "")));
+    let one = "[port_valves.a]\ncracking_pressure = \"40 bar\"\noverride = \"5 bar\"\nflow = \"2 mL/s\"\n";
+    let of_a = [("port_valves.a.cracking_pressure", [30e5, 40e5, 50e5])];
+    follows_the_rig(&loaded(&text(&ranges(&[&region[..], &of_a].concat()), one, "internal_leakage = 1e-12")));
+}
+
 /// Gas accumulators with a neck, and the numbers of both.
 #[test]
 fn necks_follow() {

@@ -25,7 +25,7 @@ use unused::unmoved_keys_are_used;
 
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
 /// Tables that declare the rig and its loop; the others state its requirements.
-const TABLES: [&str; 16] = [
+const TABLES: [&str; 17] = [
     "fluid",
     "supply",
     "valve",
@@ -33,6 +33,7 @@ const TABLES: [&str; 16] = [
     "motor",
     "line",
     "cross_port",
+    "port_valves",
     "load",
     "force_sensor",
     "velocity_sensor",

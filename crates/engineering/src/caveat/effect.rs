@@ -1,6 +1,7 @@
 //! Effects that a linear loop or the models of a linearisation do not include, as facts.
 
 use phea_dynamics::linear::{Discretization, MovedRoot};
+use phea_hydraulics::port_valves::ValveAtPoint;
 
 use super::misfit::{MisfitConsequence, UnexplainedPart};
 use super::outside_family::OutsideFamily;
@@ -114,6 +115,13 @@ pub enum UncountedEffect {
         conductance: f64,
         /// True if `[uncertainty]` gives the transition pressure a range.
         has_range: bool,
+    },
+    /// A relief or check valve of a chamber, counted with its opening at each operating point.
+    PortValve {
+        /// Chamber, `A` or `B`.
+        side: char,
+        /// The valve at the operating point.
+        valve: ValveAtPoint,
     },
     /// Dynamic pressure feedback, which the models of a linearisation omit.
     DynamicPressureFeedback,

@@ -3,6 +3,7 @@ use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::ExpansionPressures;
+use phea_hydraulics::outward_flow::OutwardFlow;
 use phea_hydraulics::servovalve::Supply;
 
 use super::in_loop::velocity_gain;
@@ -23,17 +24,22 @@ pub fn components<S: Scalar>(plain: &DeclaredActuator, declared: &DeclaredActuat
     let tank_pressure = declared.supply.tank_pressure;
     let pressures = ExpansionPressures::of(pressure, tank_pressure);
     let fluid = declared.fluid.component();
+    let valve = declared.valve.component(pressure - tank_pressure);
     Components {
         gas: [&declared.line.a, &declared.line.b]
             .map(|line| Some(line.accumulator.as_ref()?.chamber_gas(&fluid))),
         fluid,
         supply: Supply::of(&declared.supply),
         power_unit: declared.supply.component(declared.fluid.bulk_modulus),
-        valve: declared.valve.component(pressure - tank_pressure),
+        valve,
         line_a: declared.line.a.component(pressures),
         line_b: declared.line.b.component(pressures),
         line_models: [&plain.line.a, &plain.line.b].map(|line| line.motion.component()),
         cross_port: declared.cross_port.as_ref().map(|port| port.component(fluid.density)),
+        outward: OutwardFlow {
+            external_leakage: declared.motor.as_ref().and_then(|motor| motor.case_leakage),
+            port_valves: declared.port_valves.as_ref().map_or([None; 2], |valves| valves.components(&valve)),
+        },
         cylinder: match &declared.motor {
             None => declared.cylinder.component(),
             Some(motor) => motor.component(),

@@ -54,8 +54,9 @@ fn in_the_limit(
     if !is_shut_at(&model.valve, point) {
         return *found;
     }
-    let case = model.external_leakage.unwrap_or(0.0);
-    let chambers = ChamberCoefficients { flow_pressure_a: case, flow_pressure_b: case, ..found.chambers };
+    let outward = model.outward_slopes([point.pressure_a, point.pressure_b]);
+    let [flow_pressure_a, flow_pressure_b] = outward.unwrap_or([0.0; 2]);
+    let chambers = ChamberCoefficients { flow_pressure_a, flow_pressure_b, ..found.chambers };
     TwoPressureLinearParameters { chambers, ..*found }
 }
 

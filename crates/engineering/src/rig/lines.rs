@@ -31,10 +31,10 @@ impl RigAtPoint {
             _ => without_branches(components, pressures, compliances),
         };
         let chambers_only = own(compliance_at(&bare, point.position));
-        let leakage = components.cylinder.external_leakage.unwrap_or(0.0);
+        let outward = self.model.outward_slopes(pressures).unwrap_or([0.0; 2]);
         // in the limit of an ideal valve both coefficients would vanish
         let ChamberCoefficients { flow_pressure_a, flow_pressure_b, .. } = self.leaking;
-        let leaking = [flow_pressure_a, flow_pressure_b].map(|whole| leakage / whole);
+        let leaking = [outward[0] / flow_pressure_a, outward[1] / flow_pressure_b];
         Ok(moving.map(|lines| {
             let lumped = own(chambers.compliances);
             let behind = LineChambers { lines, chambers: chambers_only, lumped, leaking };

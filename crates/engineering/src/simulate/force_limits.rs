@@ -1,6 +1,7 @@
 //! Forces that a rig reaches at rest, and forces that its sensor withstands.
 
 use phea_hydraulics::actuator::Components;
+use phea_hydraulics::operating_point::{Balance, Steady, hydraulic_force};
 use phea_hydraulics::servovalve::Supply;
 
 use super::TimeRequirement;
@@ -13,8 +14,39 @@ pub(crate) struct ForceLimits {
     /// Supply pressures, Pa, with stall forces, N: the supply as declared and, if it is uncertain,
     /// the lowest of the family.
     pub(super) stall: Vec<(f64, [f64; 2])>,
+    /// Relief valves that open before the piston stalls.
+    relieved: Option<ReliefLimit>,
     /// Capacity of the force sensor in either direction, N.
     pub(super) capacity: Option<f64>,
+}
+
+/// Relief valves that open within the pressure of the supply.
+struct ReliefLimit {
+    /// Chamber pressures at which the valve of the pushing chamber opens, retracting and extending,
+    /// Pa; infinite without such a valve.
+    opens_at: [f64; 2],
+    /// Forces that the fully open servovalve holds against these valves, N.
+    forces: [f64; 2],
+}
+
+impl ReliefLimit {
+    fn of(components: &Components) -> Option<ReliefLimit> {
+        let Components { outward, supply, valve, .. } = components;
+        let opens_at = outward.port_valves.map(|valves| {
+            let relief = valves.and_then(|valves| valves.relief);
+            relief.map_or(f64::INFINITY, |relief| supply.tank_pressure + relief.cracking_pressure)
+        });
+        let [opens_a, opens_b] = opens_at;
+        if opens_a.min(opens_b) >= supply.pressure {
+            return None;
+        }
+        let balance = Balance::at(components, 0.0);
+        let forces = [-1.0, 1.0].map(|direction| {
+            let settled = balance.settle(Steady::Command(direction * valve.nominal_voltage));
+            hydraulic_force(balance.areas, settled.pressures)
+        });
+        Some(ReliefLimit { opens_at: [opens_b, opens_a], forces })
+    }
 }
 
 /// A required step that a rig does not reach, or does not survive.
@@ -68,6 +100,13 @@ pub enum RestLimit {
         /// Stall force, N.
         force: f64,
     },
+    /// Force at which the fully open servovalve and a relief valve of a chamber balance, N.
+    Relief {
+        /// Chamber pressure at which the relief valve opens, Pa.
+        opens_at: f64,
+        /// Force that is held against it, N.
+        force: f64,
+    },
     /// Capacity of the force sensor, N.
     Capacity(f64),
 }
@@ -93,7 +132,7 @@ pub(crate) fn steps_beyond(setup: &Setup<'_>, required: &[TimeRequirement]) -> V
 /// Limitation of a force at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForceLimit {
-    /// The supply pressure on the piston.
+    /// The supply pressure on the piston, as far as relief valves of its chambers admit it.
     Supply,
     /// The declared capacity of the force sensor.
     Sensor,
@@ -101,7 +140,8 @@ pub enum ForceLimit {
 
 impl ForceLimits {
     pub(crate) fn of(project: &Project, actuator: &DeclaredActuator) -> ForceLimits {
-        let Components { cylinder, supply, .. } = components(actuator, actuator);
+        let components = components(actuator, actuator);
+        let Components { cylinder, supply, .. } = components;
         let range = project.uncertainty.iter().find(|one| one.name == "supply.pressure");
         let lowest = range.map(|range| range.minimum).filter(|lowest| *lowest < supply.pressure);
         let pressures = std::iter::once(supply.pressure).chain(lowest);
@@ -110,7 +150,8 @@ impl ForceLimits {
             (pressure, cylinder.stall_forces(&supply))
         };
         let capacity = actuator.force_sensor.capacity;
-        ForceLimits { stall: pressures.map(stall).collect(), capacity }
+        let relieved = ReliefLimit::of(&components);
+        ForceLimits { stall: pressures.map(stall).collect(), relieved, capacity }
     }
 
     /// Limits that a force, N, exceeds.
@@ -122,8 +163,17 @@ impl ForceLimits {
         let stall = self.stall.iter().find(exceeds);
         let stall =
             stall.map(|(pressure, stall)| RestLimit::Stall { pressure: *pressure, force: stall[side] });
+        let relieved = self.relieved.as_ref().filter(|relief| sign * force_n > sign * relief.forces[side]);
+        let relieved = relieved.filter(|_| stall.is_none());
+        let relieved =
+            relieved.map(|of| RestLimit::Relief { opens_at: of.opens_at[side], force: of.forces[side] });
         let capacity = self.capacity.filter(|capacity| sign * force_n > *capacity).map(RestLimit::Capacity);
-        stall.into_iter().chain(capacity).map(|limit| ExceededForce { limit, greatest }).collect()
+        stall
+            .into_iter()
+            .chain(relieved)
+            .chain(capacity)
+            .map(|limit| ExceededForce { limit, greatest })
+            .collect()
     }
 
     /// Greatest signed force in a direction, N, at every supply pressure of the family, and its
@@ -131,7 +181,8 @@ impl ForceLimits {
     pub(crate) fn greatest(&self, direction: f64) -> (f64, ForceLimit) {
         let sign = direction.signum();
         let side = if sign < 0.0 { 0 } else { 1 };
-        let stall = self.stall.iter().map(|(_, stall)| sign * stall[side]).fold(f64::INFINITY, f64::min);
+        let relieved = self.relieved.as_ref().map_or(f64::INFINITY, |relief| sign * relief.forces[side]);
+        let stall = self.stall.iter().map(|(_, stall)| sign * stall[side]).fold(relieved, f64::min);
         match self.capacity.filter(|capacity| *capacity < stall) {
             Some(capacity) => (sign * capacity, ForceLimit::Sensor),
             None => (sign * stall, ForceLimit::Supply),

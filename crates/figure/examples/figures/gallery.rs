@@ -375,6 +375,8 @@ pub(crate) fn circuit_of_hoses() -> Schematic {
     let hose = LineSymbol {
         kind: LineKind::Hose,
         accumulator: None,
+        has_relief: false,
+        has_check: false,
         rows: vec!["Synflex 3130-08".into(), "12.7 mm × 1.5 m".into(), "β_e 261 MPa".into()],
     };
     Schematic {
@@ -407,6 +409,8 @@ pub(crate) fn asymmetric_circuit() -> Figure {
     let pipe = LineSymbol {
         kind: LineKind::Pipe,
         accumulator: Some(AccumulatorSymbol::Fixed),
+        has_relief: false,
+        has_check: false,
         rows: vec!["pipe 10.5 mm".into(), "0.35 m".into(), "14.2 mL, 15 bar".into()],
     };
     Schematic {

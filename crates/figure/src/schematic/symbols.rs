@@ -2,15 +2,17 @@
 
 use super::super::colour::Role;
 use super::super::scene::{Anchor, Fill, Scene, Stroke, point};
-use super::gas;
 use super::mechanics::{CELL, CELL_BOTTOM, PORT_FAR, PORT_NEAR};
 use super::pen::{
     HOSE, MEASURED, OUTLINE, PIPE, ROW, SIGNAL, arrow, block, flexible, head, lines, rows, spring, word,
 };
 use super::{ControllerSymbol, LINE_ROWS, LineKind, Schematic, SupplyKind};
+use super::{gas, port_valves};
 
 /// Middle of the valve.
 pub(super) const VALVE: (f64, f64) = (202.0, 232.0);
+/// Largest number of text rows of a line below the valves at its port.
+const ROWS_BELOW_VALVES: usize = 3;
 /// Side of one of the valve's boxes.
 const SIDE: f64 = 46.0;
 pub(super) const PORT: f64 = 12.0;
@@ -113,7 +115,10 @@ pub(super) fn working_lines(scene: &mut Scene, schematic: &Schematic) {
         if let Some(kind) = line.accumulator {
             gas::accumulator(scene, kind, port, if port.0 < valve_x { 1.0 } else { -1.0 });
         }
-        rows(scene, &line.rows, (text_x, 116.0), anchor, 112.0, LINE_ROWS);
+        let way = if port.0 < valve_x { -1.0 } else { 1.0 };
+        let below = port_valves::port_valves(scene, [line.has_relief, line.has_check], port, way);
+        let most = if below > 0.0 { ROWS_BELOW_VALVES } else { LINE_ROWS };
+        rows(scene, &line.rows, (text_x, 116.0 + below), anchor, 112.0, most);
     }
 }
 

@@ -20,7 +20,6 @@ impl<S: Scalar> DeclaredCylinder<S> {
             dead_volume_a,
             dead_volume_b,
             internal_leakage: self.internal_leakage,
-            external_leakage: None,
             end_stops: self.end_stops,
         }
     }
@@ -77,7 +76,6 @@ impl<S: Scalar> DeclaredMotor<S> {
             dead_volume_a,
             dead_volume_b,
             internal_leakage: self.internal_leakage,
-            external_leakage: self.case_leakage,
             end_stops: self.end_stops,
         }
     }

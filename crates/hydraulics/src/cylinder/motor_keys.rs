@@ -7,7 +7,7 @@ use crate::contact::Contact;
 
 use crate::friction::DeclaredFriction;
 
-pub(super) const CASE_LEAKAGE_KEY: Key = key(
+pub(crate) const CASE_LEAKAGE_KEY: Key = key(
     "case_leakage",
     &FLOW_PRESSURE_COEFFICIENT,
     "Laminar leakage of each chamber through the case to the tank.",

@@ -121,7 +121,7 @@ impl Machine {
         [area_a, area_b]: [f64; 2],
     ) -> [T; 2] {
         let across = self.steady_cross_flow(state);
-        let [out_of_a, out_of_b] = self.outward_leakage(state).unwrap_or([T::from(0.0); 2]);
+        let [out_of_a, out_of_b] = self.outward_flow(state).unwrap_or([T::from(0.0); 2]);
         [
             T::from(area_a) * state.velocity + across + out_of_a,
             -T::from(area_b) * state.velocity - across + out_of_b,

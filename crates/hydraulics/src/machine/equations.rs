@@ -154,7 +154,7 @@ impl<S: Scalar> Machine<S> {
             PowerUnit::PumpLimited(_) => T::local(&valve, [opening, port_a, port_b, state.supply_pressure]),
         });
         let from_valve = [edges.supply_to_a - edges.a_to_tank, edges.supply_to_b - edges.b_to_tank];
-        let (leakage, outward) = (self.leakage(state), self.outward_leakage(state));
+        let (leakage, outward) = (self.leakage(state), self.outward_flow(state));
         match &self.cross_port {
             None => Flows { edges, internal: leakage, outward, cross_port: T::from(0.0), from_valve },
             Some(port) => {
@@ -192,10 +192,10 @@ impl<S: Scalar> Machine<S> {
 
     /// Flows out of both chambers to the tank, m3/s.
     #[inline(always)]
-    pub(super) fn outward_leakage<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> Option<[T; 2]> {
-        let conductance: T = constant(self.cylinder.external_leakage?);
+    pub(super) fn outward_flow<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> Option<[T; 2]> {
+        let outward = self.outward?.convert(&mut constant::<S, T>);
         let tank: T = constant(self.supply.tank_pressure);
-        Some([conductance * (state.pressure_a - tank), conductance * (state.pressure_b - tank)])
+        Some(outward.flows([state.pressure_a, state.pressure_b], tank))
     }
 
     /// Flow that the valve takes from the supply, tare flow included, m3/s.

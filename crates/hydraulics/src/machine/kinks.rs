@@ -21,6 +21,7 @@ impl<S: Scalar> Machine<S> {
     /// stages      x at both ends of each transition
     /// gas         p at which the bladder begins to lift, and at which it has lifted
     /// supply      p at which the relief valve opens
+    /// port valves p at both ends of the transition of a relief or check valve at a chamber
     /// ```
     pub(super) fn write_kinks<T: Scalar + From<S>>(
         &self,
@@ -67,6 +68,7 @@ impl<S: Scalar> Machine<S> {
                 write(beyond - half);
             }
         }
+        self.write_port_valve_kinks([state.pressure_a, state.pressure_b], write);
         self.write_gas_kinks([state.pressure_a, state.pressure_b], (vector, inputs), write);
         if let PowerUnit::PumpLimited(unit) = &self.power_unit {
             let opens = self.supply.pressure - unit.relief_override;
@@ -75,6 +77,17 @@ impl<S: Scalar> Machine<S> {
                 let [from, to] = gas.lifting_pressures();
                 write(state.supply_pressure - constant::<S, T>(from));
                 write(state.supply_pressure - constant::<S, T>(to));
+            }
+        }
+    }
+
+    /// Writes the kinks of the relief and check valves at the chambers.
+    fn write_port_valve_kinks<T: Scalar + From<S>>(&self, chambers: [T; 2], write: &mut dyn FnMut(T)) {
+        let Some(outward) = &self.outward else { return };
+        let tank: T = constant(self.supply.tank_pressure);
+        for (valves, pressure) in outward.port_valves.iter().zip(chambers) {
+            if let Some(valves) = valves {
+                valves.convert(&mut constant::<S, T>).write_kinks(pressure - tank, write);
             }
         }
     }

@@ -27,7 +27,7 @@ pub const OIL_ACCOUNTS: [&str; 11] = [
 
 /// Names of the energy accounts, in the order of [`Ledger::energy`]. Accounts of parts that a
 /// machine lacks are zero.
-pub const ENERGY_ACCOUNTS: [&str; 22] = [
+pub const ENERGY_ACCOUNTS: [&str; 23] = [
     "chamber_a",
     "chamber_b",
     "line_a",
@@ -43,6 +43,7 @@ pub const ENERGY_ACCOUNTS: [&str; 22] = [
     "valve",
     "leakage",
     "cross_port",
+    "port_valves",
     "piston",
     "friction",
     "sensor",
@@ -178,9 +179,10 @@ impl<S: Scalar> Machine<S> {
             + edges.b_to_tank * (line_b.port_pressure - tank);
         let [piston, friction, sensor, series, end_stops, load] = self.moving(now);
         let [out_of_a, out_of_b] = now.flows.out_of_chambers();
+        let [valve_a, valve_b] = self.through_port_valves(now);
         let leaked = (now.flows.internal - now.flows.cross_port) * (side_a.pressure - side_b.pressure)
-            + out_of_a * (side_a.pressure - tank)
-            + out_of_b * (side_b.pressure - tank);
+            + (out_of_a - valve_a) * (side_a.pressure - tank)
+            + (out_of_b - valve_b) * (side_b.pressure - tank);
         let accounts = [
             side_a.energy(into_a, area_a * velocity - now.turned),
             side_b.energy(into_b, now.turned - area_b * velocity),
@@ -197,6 +199,7 @@ impl<S: Scalar> Machine<S> {
             heat(throttled),
             heat(leaked),
             self.cross_port_account(now),
+            heat(valve_a * (side_a.pressure - tank) + valve_b * (side_b.pressure - tank)),
             piston,
             friction,
             sensor,
@@ -216,8 +219,16 @@ impl<S: Scalar> Machine<S> {
             inflow: oil + now.external_power - self.on_ground(now) + now.gas[0].work + now.gas[1].work,
             lost: total(&accounts, |account| account.lost),
         };
-        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u] = accounts;
-        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, rig]
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v] = accounts;
+        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, rig]
+    }
+
+    /// Flows out of both chambers through their relief and check valves, m3/s.
+    fn through_port_valves<T: Scalar + From<S>>(&self, now: &Instant<T>) -> [T; 2] {
+        let Some(outward) = &self.outward else { return [T::from(0.0); 2] };
+        let outward = outward.convert(&mut constant::<S, T>);
+        let tank: T = constant(self.supply.tank_pressure);
+        outward.through_port_valves([now.state.pressure_a, now.state.pressure_b], tank)
     }
 
     /// Valve between the chambers: heat of its restrictor, and content of its capacity.

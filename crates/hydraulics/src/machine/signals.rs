@@ -1,7 +1,7 @@
 use phea_dynamics::scalar::{Parameters, Scalar};
 
 use super::equations::constant;
-use super::{Machine, Motion};
+use super::{Machine, MachineState, Motion};
 use crate::series::MovingSeries;
 use crate::signal::Signal;
 
@@ -128,8 +128,9 @@ impl<T: Copy> MachineSignals<T> {
 /// margin to the pressure limit of that gas in Pa, which moves with an adjusted precharge.
 /// `series_end`: the remaining distance to the nearer end of a series spring's travel in m.
 /// `cavitation_transmission`: the lowest pressure in the oil of a transmission, less vapour
-/// pressure in Pa.
-pub const INDICATORS: [&str; 14] = [
+/// pressure in Pa. `relief_valve`, `check_valve`: the remaining margin to the cracking pressure of
+/// the valve between that chamber and the tank in Pa.
+pub const INDICATORS: [&str; 18] = [
     "cavitation_a",
     "cavitation_b",
     "end_stop_a",
@@ -144,6 +145,10 @@ pub const INDICATORS: [&str; 14] = [
     "accumulator_overpressure_b",
     "series_end",
     "cavitation_transmission",
+    "relief_valve_a",
+    "relief_valve_b",
+    "check_valve_a",
+    "check_valve_b",
 ];
 
 impl<S: Scalar> Machine<S> {
@@ -253,6 +258,7 @@ impl<S: Scalar> Machine<S> {
         let below = |limit: Option<T>, pressure: T| limit.map_or(T::from(1.0), |limit| limit - pressure);
         let [behind_a, behind_b] = self.gas_pressures([state.pressure_a, state.pressure_b], &gas, setting);
         let [limit_a, limit_b] = self.gas_limits(setting);
+        let [[relief_a, check_a], [relief_b, check_b]] = self.valve_margins(&state);
         [
             state.pressure_a.minimum(behind_a) - vapour,
             state.pressure_b.minimum(behind_b) - vapour,
@@ -278,7 +284,24 @@ impl<S: Scalar> Machine<S> {
                 }
                 Some(MovingSeries::Spring(_)) | None => T::from(1.0),
             },
+            relief_a,
+            relief_b,
+            check_a,
+            check_b,
         ]
+    }
+
+    /// Margins to the cracking pressures of the relief and the check valve of each chamber, Pa; 1
+    /// for a valve that is absent.
+    fn valve_margins<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> [[T; 2]; 2] {
+        let (one, tank) = (T::from(1.0), constant::<S, T>(self.supply.tank_pressure));
+        let valves = self.outward.map_or([None; 2], |outward| outward.port_valves);
+        let margins = |side: usize, pressure: T| {
+            let valves = valves[side].map(|valves| valves.convert(&mut constant::<S, T>));
+            let excesses = valves.map_or([None; 2], |valves| valves.excesses(pressure - tank));
+            excesses.map(|excess| excess.map_or(one, |excess| -excess))
+        };
+        [margins(0, state.pressure_a), margins(1, state.pressure_b)]
     }
 }
 

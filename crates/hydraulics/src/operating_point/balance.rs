@@ -5,6 +5,7 @@ use super::settling::AT_NULL;
 use super::{OperatingPoint, OperatingPointError, SteadyLoad, hydraulic_force};
 use crate::actuator::Components;
 use crate::cross_port::CrossFlow;
+use crate::outward_flow::OutwardFlow;
 use crate::servovalve::{ChamberFlows, Servovalve, Supply, chamber_flows};
 
 /// Parameters of the balance of flows and forces. Units: those of the components, m2.
@@ -18,8 +19,8 @@ pub struct Balance<S = f64> {
     pub areas: [S; 2],
     /// Flow from chamber A to chamber B; `None` without such flow.
     pub across: Option<CrossFlow<S>>,
-    /// Conductance from each chamber to the tank in m3/(s Pa); `None` without external leakage.
-    pub outward: Option<S>,
+    /// Flow from each chamber to the tank; `None` without such flow.
+    pub outward: Option<OutwardFlow<S>>,
 }
 
 impl<S: Scalar> Balance<S> {
@@ -31,13 +32,14 @@ impl<S: Scalar> Balance<S> {
             supply: components.supply,
             areas: cylinder.areas_at(position),
             across: components.cross_flow(),
-            outward: cylinder.external_leakage,
+            outward: components.outward.if_present(),
         }
     }
 
-    /// Leakage from a chamber of this pressure to the tank, m3/s.
-    pub(super) fn leaving(&self, pressure: S) -> S {
-        self.outward.map_or(S::from(0.0), |conductance| conductance * (pressure - self.supply.tank_pressure))
+    /// Flow from chamber A (0) or B (1) at this pressure to the tank, m3/s.
+    pub(super) fn leaving(&self, side: usize, pressure: S) -> S {
+        let above_tank = pressure - self.supply.tank_pressure;
+        self.outward.map_or(S::from(0.0), |outward| outward.flow(side, above_tank))
     }
 }
 
@@ -55,8 +57,8 @@ impl Balance {
         let Supply { pressure, tank_pressure } = self.supply;
         let [area_a, area_b] = self.areas;
         let into = |p: f64| chamber_flows(&self.valve, &self.supply, command, p, p);
-        let surplus_a = |p: f64| into(p).into_a - area_a * velocity - self.leaving(p);
-        let surplus_b = |p: f64| into(p).into_b + area_b * velocity - self.leaving(p);
+        let surplus_a = |p: f64| into(p).into_a - area_a * velocity - self.leaving(0, p);
+        let surplus_b = |p: f64| into(p).into_b + area_b * velocity - self.leaving(1, p);
         let pressure_a = falling_root(surplus_a, tank_pressure, pressure);
         let pressure_b = falling_root(surplus_b, tank_pressure, pressure);
         match (pressure_a, pressure_b) {
@@ -141,8 +143,8 @@ impl Balance {
             pressure_b,
             velocity,
             hydraulic_force: hydraulic_force(self.areas, pressures),
-            net_flow_a: into_a - area_a * velocity - across - self.leaving(pressure_a),
-            net_flow_b: into_b + area_b * velocity + across - self.leaving(pressure_b),
+            net_flow_a: into_a - area_a * velocity - across - self.leaving(0, pressure_a),
+            net_flow_b: into_b + area_b * velocity + across - self.leaving(1, pressure_b),
         }
     }
 }

@@ -243,22 +243,22 @@ impl<S: Scalar> Balance<S> {
         let across = self.across.map_or(S::from(0.0), |across| across.flow(load_pressure));
         let [area_a, area_b] = self.areas;
         [
-            self.leaking(edges_a, area_a * velocity + across),
-            self.leaking(edges_b, -area_b * velocity - across),
+            self.leaking(0, edges_a, area_a * velocity + across),
+            self.leaking(1, edges_b, -area_b * velocity - across),
         ]
     }
 
-    /// Pressure as in [`Balance::between`] with the leakage to the tank at this pressure, found by
-    /// bisection: the more leakage, the lower the pressure.
-    fn leaking(&self, edges: &[S; 2], flow: S) -> S {
-        if self.outward.is_none() {
-            return self.between(edges, flow);
-        }
+    /// Pressure as in [`Balance::between`] with the flow to the tank at this pressure, found by
+    /// bisection: the greater that flow, the lower the pressure.
+    fn leaking(&self, side: usize, edges: &[S; 2], flow: S) -> S {
+        let Some(outward) = &self.outward else { return self.between(edges, flow) };
         let tank = self.supply.tank_pressure;
         let drop = self.supply.pressure - tank;
-        let at = |fraction: S| self.between(edges, flow + self.leaving(tank + fraction * drop));
-        let falls = |fraction: S| (at(fraction) - tank) / drop - fraction;
-        tank + halved([S::from(0.0), S::from(1.0)], HALVINGS_OF_ORIFICE, falls) * drop
+        let [least, width] = outward.range(side, self.between(edges, flow) - tank, drop, flow);
+        let low = tank + least;
+        let at = |fraction: S| self.between(edges, flow + self.leaving(side, low + fraction * width));
+        let falls = |fraction: S| (at(fraction) - low) / width - fraction;
+        low + halved([S::from(0.0), S::from(1.0)], HALVINGS_OF_ORIFICE, falls) * width
     }
 
     /// Pressure between an edge from supply and one to tank, of conductances a and b, that gives
@@ -295,16 +295,18 @@ impl<S: Scalar> Balance<S> {
         let (across, conductance) =
             self.across.map_or((none, none), |across| (across.flow(drop), across.slope(drop)));
         let [area_a, area_b] = self.areas;
-        let [out_of_a, out_of_b] = [pressure_a, pressure_b].map(|pressure| self.leaving(pressure));
+        let [out_of_a, out_of_b] = [self.leaving(0, pressure_a), self.leaving(1, pressure_b)];
         (
             [into_a - area_a * velocity - across - out_of_a, into_b + area_b * velocity + across - out_of_b],
             conductance,
         )
     }
 
-    fn slopes(&self, command: S, [pressure_a, pressure_b]: [S; 2]) -> ChamberCoefficients<S> {
+    fn slopes(&self, command: S, pressures: [S; 2]) -> ChamberCoefficients<S> {
+        let [pressure_a, pressure_b] = pressures;
+        let outward = self.outward.map(|outward| outward.slopes(pressures, self.supply.tank_pressure));
         chamber_coefficients(&self.valve, &self.supply, command, pressure_a, pressure_b, SpoolDirection::Mean)
-            .leaking(self.outward)
+            .leaking(outward)
     }
 
     /// Newton step of both pressures at a fixed spool position.

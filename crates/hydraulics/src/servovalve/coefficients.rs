@@ -53,14 +53,14 @@ pub struct ChamberCoefficients<S = f64> {
 }
 
 impl<S: Scalar> ChamberCoefficients<S> {
-    /// Coefficients of chambers that also leak to the tank, by this conductance in m3/(s Pa): the
-    /// net flow falls with the pressure like that of the valve.
+    /// Coefficients of chambers that also leak to the tank, with these slopes in m3/(s Pa): the net
+    /// flow falls with the pressure like that of the valve.
     #[must_use]
-    pub fn leaking(self, outward: Option<S>) -> ChamberCoefficients<S> {
-        let Some(conductance) = outward else { return self };
+    pub fn leaking(self, outward: Option<[S; 2]>) -> ChamberCoefficients<S> {
+        let Some([slope_a, slope_b]) = outward else { return self };
         ChamberCoefficients {
-            flow_pressure_a: self.flow_pressure_a + conductance,
-            flow_pressure_b: self.flow_pressure_b + conductance,
+            flow_pressure_a: self.flow_pressure_a + slope_a,
+            flow_pressure_b: self.flow_pressure_b + slope_b,
             ..self
         }
     }

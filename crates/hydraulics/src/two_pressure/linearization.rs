@@ -55,7 +55,7 @@ pub fn two_pressure_linear_parameters<S: Scalar>(
             pressure_b,
             direction,
         )
-        .leaking(model.external_leakage),
+        .leaking(model.outward_slopes([pressure_a, pressure_b])),
         moving_mass: model.moving_mass,
         viscous_friction: model.viscous_friction,
         sensor_stiffness: model.sensor_stiffness,

@@ -1,7 +1,7 @@
 //! Prices: all of one project must be in one currency.
 
 use super::Check;
-use crate::{Component, DeclaredActuator, DeclaredLine, DeclaredSeries, LineCost};
+use crate::{ChamberValve, Component, DeclaredActuator, DeclaredLine, DeclaredSeries, LineCost};
 use phea_quantity::Price;
 
 pub(super) fn prices(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
@@ -21,15 +21,22 @@ pub(super) fn prices(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
 /// All prices with their paths, in the order of the tables.
 fn stated(actuator: &DeclaredActuator, check: &Check<'_, '_>) -> Vec<(String, Price)> {
     let mut found = vec![("valve.price".to_string(), actuator.valve.cost.price)];
+    let of_side = |table: &str, side: &str, key: &str| {
+        let own = format!("{table}.{side}.{key}");
+        if check.declared(&own) { own } else { format!("{table}.{key}") }
+    };
     for (side, line) in [("a", &actuator.line.a), ("b", &actuator.line.b)] {
-        let at = |key: &str| {
-            let own = format!("line.{side}.{key}");
-            if check.declared(&own) { own } else { format!("line.{key}") }
-        };
+        let at = |key: &str| of_side("line", side, key);
         found.extend(of_line(line, &at));
         found.extend(line.accumulator.iter().map(|gas| (at("accumulator.price"), gas.cost.price)));
     }
-    found.extend(actuator.cross_port.iter().map(|port| ("cross_port.price".to_string(), port.cost.price)));
+    found.extend(actuator.chamber_valves().into_iter().map(|ChamberValve { table, side, cost, .. }| {
+        let path = match side {
+            Some(side) => of_side(table, &side.to_lowercase(), "price"),
+            None => format!("{table}.price"),
+        };
+        (path, cost.price)
+    }));
     match &actuator.series {
         Some(DeclaredSeries::Spring(spring)) => found.push(("series.price".to_string(), spring.cost.price)),
         Some(DeclaredSeries::Transmission(transmission)) => {

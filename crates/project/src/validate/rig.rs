@@ -20,6 +20,9 @@ pub(super) fn parts(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     if let Some(port) = &actuator.cross_port {
         port.check(actuator.fluid.density, narrowest_port(actuator), check);
     }
+    if let Some(valves) = &actuator.port_valves {
+        valves.check(check);
+    }
     if actuator.motor.is_some() {
         return;
     }

@@ -141,7 +141,7 @@ fn part_name(part: &UnstatedPart) -> String {
         PartKind::Hose => ["hose", "hoses"],
         PartKind::Pipe => ["pipe", "pipes"],
         PartKind::Accumulator => ["accumulator", "accumulators"],
-        PartKind::CrossPort => ["cross-port valve", "cross-port valves"],
+        PartKind::ChamberValve { names, .. } => names,
         PartKind::SeriesSpring => ["series spring", "series springs"],
         PartKind::TransmissionCylinders => ["cylinders of the transmission", "cylinders of transmissions"],
         PartKind::TransmissionLine => ["line of the transmission", "lines of transmissions"],

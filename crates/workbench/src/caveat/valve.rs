@@ -1,6 +1,7 @@
-//! Effects of the servovalve and of valves between the chambers.
+//! Effects of the servovalve and of valves at the chambers.
 
-use crate::quantity::{FLOW, MotionKind, PRESSURE, VOLTAGE, display, significant};
+use crate::quantity::{FLOW, MotionKind, PRESSURE, Units, VOLTAGE, display, significant};
+use phea_hydraulics::port_valves::{PortValveKind, ValveAtPoint, ValveOpening};
 
 pub(super) const DYNAMIC_PRESSURE_FEEDBACK: &str = "cross_port.kind = \"dynamic_pressure_feedback\" is counted in the plant and the impedance at the load: the other models and the \
      asymptotes of the impedance are without it";
@@ -57,4 +58,30 @@ pub(super) fn cross_port_orifice(
         "cross_port is counted for small motions: its orifice has {at}, and there the slope of its transition_pressure of {transition}, \
          {conductance} m3/(s.Pa); an oscillation beyond that is damped less: {remedy}"
     )
+}
+
+pub(super) fn port_valve(side: char, valve: &ValveAtPoint, units: &Units) -> String {
+    let ValveAtPoint { kind, opening, pressure, opens_at, conductance, open_conductance } = *valve;
+    let (name, beyond) = match kind {
+        PortValveKind::Relief => ("relief valve", "above"),
+        PortValveKind::Check => ("check valve", "below"),
+    };
+    let [pressure, opens_at] = [pressure, opens_at].map(|pressure| units.pressure.short(pressure, 4));
+    let [conductance, open_conductance] = [conductance, open_conductance].map(|one| significant(one, 3));
+    let whole = format!("port_valves: the {name} of chamber {side}");
+    match opening {
+        ValveOpening::Shut => format!(
+            "{whole} opens {beyond} {opens_at}, which the supply reaches: each plant has the valve as it is at its operating point, here shut at \
+             {pressure}, and only a simulation shows a motion that opens it"
+        ),
+        ValveOpening::InTransition => format!(
+            "{whole} is within its transition at the operating point, at {pressure}: each plant has its slope there, {conductance} m3/(s.Pa), and a motion \
+             beyond port_valves.transition_pressure another one, up to {open_conductance}; move the operating point away from {opens_at}, or judge by a \
+             simulation"
+        ),
+        ValveOpening::Open => format!(
+            "{whole} is open at the operating point, at {pressure}: it opens {beyond} {opens_at}, passes oil at rest and damps with {conductance} m3/(s.Pa), \
+             which a motion that shuts it does not have"
+        ),
+    }
 }

@@ -12,7 +12,7 @@ const SLOPES_OF_A_MOTOR: &str = "1/K_c = 1/K_{cA} + 1/K_{cB}";
 /// The parameters of the linear model, and those that are stated in their place.
 pub(super) fn linear(_: &Setup<'_>, rig: &Rig, list: &mut List) {
     list.group("Linear model");
-    let slopes = match rig.model.external_leakage {
+    let slopes = match rig.actuator.components().outward.external_leakage {
         None => list.motion.either(SLOPES, SLOPES_OF_A_MOTOR),
         Some(_) => "1/K_c = 1/(K_{cA} + G_e) + 1/(K_{cB} + G_e), with the leakage G_e through the case",
     };

@@ -48,7 +48,7 @@ fn part_name(part: &CostedPart) -> String {
         PartKind::Hose => "hose",
         PartKind::Pipe => "pipe",
         PartKind::Accumulator => "accumulator",
-        PartKind::CrossPort => "cross_port",
+        PartKind::ChamberValve { table, .. } => table,
         PartKind::SeriesSpring | PartKind::TransmissionCylinders => "series",
         PartKind::TransmissionLine => "series.line",
         PartKind::Servovalve => "valve",

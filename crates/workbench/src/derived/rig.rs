@@ -1,5 +1,7 @@
 use super::list::List;
-use super::{Derived, accumulator, cross_port, dynamics, flow, friction, impedance, linear, lines, linkage};
+use super::{
+    Derived, accumulator, chamber_valves, dynamics, flow, friction, impedance, linear, lines, linkage,
+};
 use super::{moving, operating_point, parts, series, sizing, stiffness, valve};
 use crate::rig::{Rig, RigError};
 use crate::setup::Setup;
@@ -18,7 +20,7 @@ const CHAPTERS: [DerivedChapter; 16] = [
     linkage::linkage,
     valve::valve,
     operating_point::operating_point,
-    cross_port::cross_port,
+    chamber_valves::chamber_valves,
     linear::linear,
     dynamics::dynamics,
     impedance::impedance,

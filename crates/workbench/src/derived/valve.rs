@@ -38,7 +38,7 @@ pub(super) fn valve(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
     null_leakage(rig, list);
     null_flow_gains(rig, list);
     greatest_leakage(project, list);
-    let chambers = without_case(rig);
+    let chambers = without_outward_flow(rig);
     chamber_slopes(&chambers, list);
     pressure_gain(&TwoPressureLinearParameters { chambers, ..rig.two_pressure }, list);
 }
@@ -75,7 +75,7 @@ fn unloaded_flow_gains(rig: &Rig, list: &mut List) {
 
 /// K_c of the valve on either side of null.
 fn null_leakage(rig: &Rig, list: &mut List) {
-    let own = TwoPressureModel { external_leakage: None, ..rig.model };
+    let own = TwoPressureModel { outward: None, ..rig.model };
     let [above, below] = list.motion.either(
         [
             "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U to 0 from above",
@@ -129,14 +129,15 @@ fn null_flow_gains(rig: &Rig, list: &mut List) {
     }
 }
 
-/// The coefficients of the valve without the motor's case leakage, which is part of those of the
-/// rig.
-fn without_case(rig: &Rig) -> ChamberCoefficients {
+/// The coefficients of the valve without the flow from the chambers to the tank, such as the case
+/// leakage of a motor, which is part of those of the rig.
+fn without_outward_flow(rig: &Rig) -> ChamberCoefficients {
     let chambers = rig.two_pressure.chambers;
-    let case = rig.model.external_leakage.unwrap_or(0.0);
+    let outward = rig.model.outward_slopes([rig.point.pressure_a, rig.point.pressure_b]);
+    let [slope_a, slope_b] = outward.unwrap_or([0.0; 2]);
     ChamberCoefficients {
-        flow_pressure_a: chambers.flow_pressure_a - case,
-        flow_pressure_b: chambers.flow_pressure_b - case,
+        flow_pressure_a: chambers.flow_pressure_a - slope_a,
+        flow_pressure_b: chambers.flow_pressure_b - slope_b,
         ..chambers
     }
 }
@@ -147,7 +148,7 @@ fn greatest_leakage(project: &Project, list: &mut List) {
     let Some(ValveCoefficients::Rated(NullLeakage { maximum: Some(most), .. })) = declared else { return };
     let leakiest = project.with_number("valve.null_leakage", most);
     let Some(rig) = leakiest.and_then(|leakiest| Setup::rig_of(&leakiest).ok()) else { return };
-    let own = TwoPressureModel { external_leakage: None, ..rig.model };
+    let own = TwoPressureModel { outward: None, ..rig.model };
     for (name, direction) in
         [("extending", SpoolDirection::Extending), ("retracting", SpoolDirection::Retracting)]
     {

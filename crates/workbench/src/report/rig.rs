@@ -12,8 +12,7 @@ use crate::project::{
     self, Component, CylinderTriangle, DeclaredSeries, LineVolume, LinkageKind, Load, Project, RatedFlow,
 };
 use crate::quantity::{self, AREA, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLUME};
-use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
-use phea_hydraulics::cross_port::Restrictor;
+use crate::rig::Rig;
 
 pub(super) fn chapter(project: &Project, actuator: &project::DeclaredActuator, rig: &Rig) -> Chapter {
     let mut out = Document::default();
@@ -83,23 +82,19 @@ fn cylinder_words(cylinder: &project::DeclaredCylinder, context: DescriptionCont
 }
 
 fn single_line(declared: &project::DeclaredLine) -> LineSymbol {
-    match &declared.component {
-        Component::Pipe { pipe, length } => LineSymbol {
-            kind: LineKind::Pipe,
-            accumulator: None,
-            rows: vec![format!("pipe {}", shown(pipe.bore, &LENGTH)), shown(*length, &LENGTH)],
-        },
-        Component::Hose { properties, length, .. } => LineSymbol {
-            kind: LineKind::Hose,
-            accumulator: None,
-            rows: vec![format!("hose {}", shown(properties.bore, &LENGTH)), shown(*length, &LENGTH)],
-        },
-        Component::Volume(LineVolume { volume, effective_bulk_modulus }) => LineSymbol {
-            kind: LineKind::Pipe,
-            accumulator: None,
-            rows: vec![shown(*volume, &VOLUME), format!("β {}", shown(*effective_bulk_modulus, &PRESSURE))],
-        },
-    }
+    let (kind, rows) = match &declared.component {
+        Component::Pipe { pipe, length } => {
+            (LineKind::Pipe, [format!("pipe {}", shown(pipe.bore, &LENGTH)), shown(*length, &LENGTH)])
+        }
+        Component::Hose { properties, length, .. } => {
+            (LineKind::Hose, [format!("hose {}", shown(properties.bore, &LENGTH)), shown(*length, &LENGTH)])
+        }
+        Component::Volume(LineVolume { volume, effective_bulk_modulus }) => {
+            let modulus = format!("β {}", shown(*effective_bulk_modulus, &PRESSURE));
+            (LineKind::Pipe, [shown(*volume, &VOLUME), modulus])
+        }
+    };
+    LineSymbol::new(kind, rows.to_vec())
 }
 
 /// The load in a few words.
@@ -254,29 +249,8 @@ fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
         rows.push(("line A", circuit::line_words(&actuator.line.a)));
         rows.push(("line B", circuit::line_words(&actuator.line.b)));
     }
-    rows.extend(cross_port_at_point(rig).map(|found| ("between the chambers", cross_port_words(&found))));
+    rows.extend(circuit::chamber_valve_rows(rig));
     Table::new(["component", "declared"]).with(rows.into_iter().map(|(name, text)| [name.to_string(), text]))
-}
-
-/// A valve between the chambers in a few words, with its flow and loss at rest.
-fn cross_port_words(found: &CrossPortAtPoint) -> String {
-    let conductance = quantity::significant(found.conductance, 3);
-    let kind = match (found.valve.restrictor, found.valve.capacity) {
-        (_, Some(_)) => "dynamic pressure feedback",
-        (Restrictor::Laminar { .. }, None) => "laminar valve",
-        (Restrictor::Orifice { .. }, None) => "orifice",
-    };
-    let cost = match found.valve.capacity {
-        Some(capacity) => {
-            format!("capacity {} m3/Pa, nothing flows at rest", quantity::significant(capacity, 3))
-        }
-        None => format!(
-            "passes {} and loses {} W at rest",
-            shown(found.flow, &FLOW),
-            quantity::significant(found.loss(), 3)
-        ),
-    };
-    format!("{kind}, conductance {conductance} m3/(s.Pa), {cost}")
 }
 
 fn valve_words(actuator: &project::DeclaredActuator) -> String {

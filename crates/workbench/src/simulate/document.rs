@@ -302,8 +302,7 @@ fn beyond_words(beyond: &BeyondExpansion, units: Units) -> String {
     )
 }
 
-fn occurrence_words(occurrence: &Occurrence, motion: MotionKind) -> String {
-    let Occurrence { kind, time_s, begins } = *occurrence;
+fn occurrence_words(&Occurrence { kind, time_s, begins }: &Occurrence, motion: MotionKind) -> String {
     let of_chamber = [("_a", "A"), ("_b", "B")];
     let of_chamber = of_chamber.iter().find_map(|(end, chamber)| Some((kind.strip_suffix(end)?, *chamber)));
     let (kind, chamber) = of_chamber.unwrap_or((kind, ""));
@@ -350,6 +349,8 @@ fn occurrence_words(occurrence: &Occurrence, motion: MotionKind) -> String {
             "the oil of the transmission cavitates",
             "the pressure in the transmission is above vapour pressure again",
         ],
+        "relief_valve" => ["the relief valve of chamber # opens", "the relief valve of chamber # closes"],
+        "check_valve" => ["the check valve of chamber # opens", "the check valve of chamber # closes"],
         "supply_lost" => ["the supply falls below the tank", "the supply is above the tank again"],
         _ => ["the command reaches its limit", "the command leaves its limit"],
     };

@@ -37,6 +37,14 @@ pub(crate) fn exceeded_force(exceeded: &ExceededForce, units: &Units) -> (String
             ),
             format!("stay within {reached}, raise the supply pressure, or take a larger actuator"),
         ),
+        RestLimit::Relief { opens_at, force: holds } => (
+            format!(
+                "and the relief valve that opens at {} holds it to {}: no controller reaches it",
+                display(opens_at, &PRESSURE, 4),
+                force(holds, units)
+            ),
+            format!("stay within {reached}, or raise `cracking_pressure` in [port_valves]"),
+        ),
         RestLimit::Capacity(capacity) => (
             format!("beyond the sensor's `capacity` of {}", force(capacity, units)),
             format!("stay within {reached}, or take a sensor of more capacity"),

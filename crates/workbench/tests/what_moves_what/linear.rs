@@ -13,6 +13,7 @@ const COUNTS: f64 = 1e-3;
 const NOT_LISTED: &[(&str, &[&str])] = &[
     // through the pressures of the operating point and the command that holds it
     ("flow_gain", &["cylinder.internal_leakage", "cylinder.piston_diameter", "operating_point.position"]),
+    ("flow_gain", &["port_valves.cracking_pressure", "port_valves.flow", "port_valves.override"]),
     (
         "flow_pressure_coefficient",
         &[
@@ -21,6 +22,10 @@ const NOT_LISTED: &[(&str, &[&str])] = &[
             "cylinder.piston_diameter",
             "cylinder.rod_diameter",
             "operating_point.position",
+            "port_valves.cracking_pressure",
+            "port_valves.flow",
+            "port_valves.override",
+            "port_valves.transition_pressure",
         ],
     ),
     (

@@ -6,6 +6,7 @@ const SIMULATION: &str = include_str!("../../../project/tests/valid/simulation.t
 const ACCUMULATORS: &str = include_str!("../../../project/tests/valid/accumulators.toml");
 const NECK: &str = include_str!("../../../project/tests/valid/accumulator_neck.toml");
 const HEAT: &str = include_str!("../../../project/tests/valid/accumulator_heat.toml");
+const PORT_VALVES: &str = include_str!("../../../project/tests/valid/port_valves.toml");
 const CROSS_PORT: &str = include_str!("../../../project/tests/valid/cross_port.toml");
 const SERIES: &str = include_str!("../../../project/tests/valid/series.toml");
 const SERIES_COIL: &str = include_str!("../../../project/tests/valid/series_coil.toml");
@@ -215,6 +216,7 @@ fn with_motors() -> Vec<(String, Vec<&'static str>)> {
 fn between_chambers(hose: String, pipe: String) -> Vec<(String, Vec<&'static str>)> {
     vec![
         (CROSS_PORT.to_string(), vec![]),
+        (PORT_VALVES.to_string(), vec!["port_valves.cracking_pressure=20 bar"]),
         (
             hose,
             vec![
@@ -255,9 +257,11 @@ fn without_uncertainty(text: &str) -> String {
 }
 
 /// Values of keys that may be absent, or are not numbers.
-const STATED: [(&str, &str); 89] = [
+const STATED: [(&str, &str); 91] = [
     ("cross_port.mass", "1 kg"),
     ("cross_port.price", "100 EUR"),
+    ("port_valves.mass", "1 kg"),
+    ("port_valves.price", "100 EUR"),
     ("line.accumulator.mass", "1 kg"),
     ("line.accumulator.price", "100 EUR"),
     ("line.mass", "1 kg"),
@@ -370,16 +374,18 @@ pub(super) fn others(entry: &KeyEntry, project: &Project) -> (Vec<String>, bool)
 /// The number that a rig states, that of side A if it states one for each side.
 pub(super) fn stated(entry: &KeyEntry, project: &Project) -> Option<f64> {
     let of_one_side = || {
-        let path = entry.path.strip_prefix("line.").map(|rest| format!("line.a.{rest}"));
-        path.and_then(|path| project.number(&path))
+        let (table, rest) = entry.path.split_once('.')?;
+        let has_sides = matches!(table, "line" | "port_valves");
+        has_sides.then(|| project.number(&format!("{table}.a.{rest}")))?
     };
     project.number(&entry.path).or_else(of_one_side)
 }
 
 /// Tables that a rig may lack, with keys that are rejected in that case.
-const TABLES: [&str; 8] = [
+const TABLES: [&str; 9] = [
     "series.",
     "cross_port.",
+    "port_valves.",
     "linkage.",
     "motor.",
     "velocity_sensor.",

@@ -126,7 +126,6 @@ fn components(chance: &mut Chance) -> Components {
             dead_volume_a: area_a * stroke * 0.02,
             dead_volume_b: area_b * stroke * 0.02,
             internal_leakage: None,
-            external_leakage: None,
             end_stops: None,
         },
         friction: friction(chance, most_force, moving_mass),

@@ -121,7 +121,6 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
             dead_volume_a: area_a * stroke * 0.02,
             dead_volume_b: area_b * stroke * 0.02,
             internal_leakage: None,
-            external_leakage: None,
             end_stops: None,
         },
         friction,

@@ -244,7 +244,6 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
             dead_volume_a: area_a * stroke * chance.decades(1e-3, 0.1),
             dead_volume_b: area_b * stroke * chance.decades(1e-3, 0.1),
             internal_leakage: None,
-            external_leakage: None,
             end_stops: None,
         },
         friction: friction(chance, most_force, moving_mass, like_benchmark),

@@ -12,7 +12,9 @@ use crate::project::{
     Project, SupplyModel,
 };
 use crate::quantity::{self, FLOW, LENGTH, MASS, MotionWords, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
-use crate::rig::Rig;
+use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
+use phea_hydraulics::cross_port::Restrictor;
+use phea_hydraulics::port_valves::{PortValveKind, PortValves};
 
 pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig) -> Figure {
     let [rod_a, rod_b] = actuator.cylinder.rod_diameters_m();
@@ -20,6 +22,7 @@ pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig)
     let mut supply_rows = vec![shown(actuator.supply.pressure, &PRESSURE)];
     supply_rows.extend(actuator.supply.flow().map(|flow| shown(flow, &FLOW)));
     let symmetric = rod_a > 0.0 && rod_b > 0.0;
+    let [valves_a, valves_b] = rig.actuator.components().outward.port_valves;
     let chart = Schematic {
         supply: match actuator.supply.model {
             SupplyModel::Constant { .. } => SupplyKind::ConstantPressure,
@@ -31,8 +34,8 @@ pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig)
             actuator.valve.model.clone().unwrap_or_else(|| "servovalve".to_string()),
             format!("±{}", shown(actuator.valve.nominal_voltage, &VOLTAGE)),
         ],
-        line_a: line_symbol(&actuator.line.a),
-        line_b: line_symbol(&actuator.line.b),
+        line_a: port_symbol(line_symbol(&actuator.line.a), valves_a),
+        line_b: port_symbol(line_symbol(&actuator.line.b), valves_b),
         rods: if symmetric { Rods::Both } else { Rods::TowardsLoad },
         load_at_b: symmetric || rod_b > 0.0 || actuator.motor.is_some(),
         cross_port: actuator.cross_port.as_ref().map(cross_port_symbol),
@@ -175,6 +178,69 @@ pub(super) fn line_words(declared: &DeclaredLine) -> String {
         }));
     }
     rows.join(", ")
+}
+
+/// The valves at the chambers of a rig, each with its place and a few words.
+pub(super) fn chamber_valve_rows(rig: &Rig) -> Vec<(&'static str, String)> {
+    let cross_port = cross_port_at_point(rig);
+    let cross_port = cross_port.map(|found| ("between the chambers", cross_port_words(&found)));
+    cross_port.into_iter().chain(port_valve_rows(rig)).collect()
+}
+
+/// The relief and check valves of each chamber, with the pressures at which they open and what they
+/// pass at rest.
+fn port_valve_rows(rig: &Rig) -> Vec<(&'static str, String)> {
+    let components = rig.actuator.components();
+    let tank = components.supply.tank_pressure;
+    let sides = components.outward.port_valves.iter().zip([rig.point.pressure_a, rig.point.pressure_b]);
+    let row = |((valves, pressure), name): ((&Option<PortValves>, f64), &'static str)| {
+        let valves = valves.as_ref()?;
+        let words = valves.at_point(pressure, tank).into_iter().map(|valve| {
+            let (name, beyond) = match valve.kind {
+                PortValveKind::Relief => ("relief valve", "above"),
+                PortValveKind::Check => ("check valve", "below"),
+            };
+            let conductance = quantity::significant(valve.open_conductance, 3);
+            format!("{name} opens {beyond} {}, {conductance} m3/(s.Pa)", shown(valve.opens_at, &PRESSURE))
+        });
+        let at_rest = match valves.flow(pressure - tank) {
+            0.0 => "nothing flows at rest".to_string(),
+            flow => format!("passes {} at rest", shown(flow, &FLOW)),
+        };
+        Some((name, words.chain([at_rest]).collect::<Vec<String>>().join("; ")))
+    };
+    sides.zip(["chamber A to tank", "chamber B to tank"]).filter_map(row).collect()
+}
+
+/// A valve between the chambers in a few words, with its flow and loss at rest.
+fn cross_port_words(found: &CrossPortAtPoint) -> String {
+    let conductance = quantity::significant(found.conductance, 3);
+    let kind = match (found.valve.restrictor, found.valve.capacity) {
+        (_, Some(_)) => "dynamic pressure feedback",
+        (Restrictor::Laminar { .. }, None) => "laminar valve",
+        (Restrictor::Orifice { .. }, None) => "orifice",
+    };
+    let cost = match found.valve.capacity {
+        Some(capacity) => {
+            format!("capacity {} m3/Pa, nothing flows at rest", quantity::significant(capacity, 3))
+        }
+        None => format!(
+            "passes {} and loses {} W at rest",
+            shown(found.flow, &FLOW),
+            quantity::significant(found.loss(), 3)
+        ),
+    };
+    format!("{kind}, conductance {conductance} m3/(s.Pa), {cost}")
+}
+
+/// A line with the valves between its chamber and the tank.
+fn port_symbol(line: LineSymbol, valves: Option<PortValves>) -> LineSymbol {
+    let [relief, check] = valves.map_or([None; 2], |valves| [valves.relief, valves.check]);
+    // gas takes the row below the line
+    let opens = relief.filter(|_| line.accumulator.is_none());
+    let opens = opens.map(|relief| format!("relief {}", shown(relief.cracking_pressure, &PRESSURE)));
+    let rows = line.rows.into_iter().chain(opens).collect();
+    LineSymbol { has_relief: relief.is_some(), has_check: check.is_some(), rows, ..line }
 }
 
 fn series_symbol(series: &DeclaredSeries) -> SeriesSymbol {

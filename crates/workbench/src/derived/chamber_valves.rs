@@ -1,11 +1,46 @@
 use phea_hydraulics::cross_port::{DynamicFeedback, Restrictor};
+use phea_hydraulics::port_valves::PortValveKind;
 
 use super::list::List;
 use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
 use crate::setup::Setup;
 
+/// Valves at the chambers.
+pub(super) fn chamber_valves(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
+    cross_port(setup, rig, list);
+    port_valves(rig, list);
+}
+
+/// Relief and check valves: their conductances, the pressures at which they open, and their flow
+/// and loss at rest.
+fn port_valves(rig: &Rig, list: &mut List) {
+    let components = rig.actuator.components();
+    let tank = components.supply.tank_pressure;
+    let sides = components.outward.port_valves.iter().zip([rig.point.pressure_a, rig.point.pressure_b]);
+    for ((valves, pressure), side) in sides.zip(["a", "b"]) {
+        let Some(valves) = valves else { continue };
+        list.group("Valves to the tank");
+        for valve in valves.at_point(pressure, tank) {
+            let (name, symbols, equations) = match valve.kind {
+                PortValveKind::Relief => ("relief", ["p_r", "G_r"], ["p_T + p_r", "G_r = q/override"]),
+                PortValveKind::Check => ("check_valve", ["p_c", "G_c"], ["p_T - p_c", "G_c = q/override"]),
+            };
+            let name = |quantity: &str| format!("port_valves.{side}.{name}_{quantity}");
+            list.add(name("pressure"), symbols[0], valve.opens_at, "Pa", equations[0]);
+            list.add(name("conductance"), symbols[1], valve.open_conductance, "m3/(s.Pa)", equations[1]);
+        }
+        let flow = valves.flow(pressure - tank);
+        let equation = "q_r + q_c at the operating point, out of the chamber";
+        list.add(format!("port_valves.{side}.flow"), "q_e", flow, "m3/s", equation);
+        let slope = format!("port_valves.{side}.conductance");
+        list.add(slope, "G_e", valves.slope(pressure - tank), "m3/(s.Pa)", "dq_e/dp at the operating point");
+        let loss = flow * (pressure - tank);
+        list.add(format!("port_valves.{side}.loss"), "P_e", loss, "W", "P_e = q_e (p - p_T)");
+    }
+}
+
 /// A valve between the chambers: its flow and its cost at rest, and the origin of its feedback.
-pub(super) fn cross_port(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
+fn cross_port(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
     let Some(found) = cross_port_at_point(rig) else { return };
     list.group("Valve between the chambers");
     if let Restrictor::Orifice { flow_coefficient, .. } = found.valve.restrictor {
