@@ -26,10 +26,10 @@ impl DeclaredCrossPort {
                 pairs.push(("transition_pressure", "diameter"));
             }
         }
-        for (name, beside) in pairs {
+        for (name, needed) in pairs {
             let written = |name: &str| check.declared(&format!("cross_port.{name}"));
-            if written(name) && !written(beside) {
-                let message = format!("`{name}` has no effect without `{beside}`");
+            if written(name) && !written(needed) {
+                let message = format!("`{name}` has no effect without `{needed}`");
                 check.warning(&format!("cross_port.{name}"), message);
             }
         }

@@ -51,7 +51,7 @@ static FRICTIONS: [(&str, Option<LaminarFriction>); 2] = [
     ("frequency_dependent", Some(LaminarFriction::FrequencyDependent)),
 ];
 
-pub(super) const END_FRACTION_KEY: Key =
+pub(super) const END_SHARE_KEY: Key =
     key("end_share", &RATIO, "Share of the compliance at each end of a line with waves.")
         .positive()
         .below(0.5);
@@ -97,9 +97,9 @@ impl<S: TableNumber> Variants<S> for LineMotion<S> {
             LineMotion::Automatic | LineMotion::Lumped => {}
             LineMotion::Creeping { relaxation_time } => v.quantity(RELAXATION, relaxation_time),
             LineMotion::Segments(segments) => segments.visit(v),
-            LineMotion::TransmissionLine { end_share } => v.optional(END_FRACTION_KEY, end_share),
+            LineMotion::TransmissionLine { end_share } => v.optional(END_SHARE_KEY, end_share),
             LineMotion::TwoWave { end_share, wall } => {
-                v.optional(END_FRACTION_KEY, end_share);
+                v.optional(END_SHARE_KEY, end_share);
                 let k = plain("wall", "The wall of a hose with two waves; what is absent is assumed.");
                 v.table(k, wall, LineWall::visit);
             }

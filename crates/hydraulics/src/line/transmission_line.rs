@@ -51,7 +51,7 @@ impl TransmissionLine {
 
 pub(super) fn check_end_share(end_share: f64) -> Result<(), LineError> {
     let mut problems = Problems::default();
-    problems.key(super::motion_keys::END_FRACTION_KEY, end_share);
+    problems.key(super::motion_keys::END_SHARE_KEY, end_share);
     let problems = problems.into_vec();
     if problems.is_empty() { Ok(()) } else { Err(LineError::Impossible { problems }) }
 }
