@@ -218,7 +218,7 @@ pub(crate) fn crossover_cell(crossovers: &Crossovers) -> Cell {
     first.map_or("none".into(), |rad_per_s| Cell::quantity(rad_per_s, 3, DisplayUnit::RADIAN_PER_SECOND))
 }
 
-/// The range of [`above_one_again`] in words.
+/// The range in which |L| is above 1 again, in words; `None` if it remains below.
 pub fn above_one_again_words(crossovers: &Crossovers) -> Option<String> {
     above_one_again(crossovers).map(|cell| cell.text())
 }
