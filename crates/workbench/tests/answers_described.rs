@@ -127,7 +127,7 @@ fn every_interval_of_a_reading_by_hand_is_that_of_a_reading() {
         let definition = &schema()["definitions"][name]["properties"];
         definition.as_object().unwrap().keys().cloned().collect::<std::collections::BTreeSet<String>>()
     };
-    let (intervals, readings) = (keys("HandIntervalsAnswer"), keys("HandReadingsAnswer"));
+    let (intervals, readings) = (keys("GraphIntervalsAnswer"), keys("GraphReadingsAnswer"));
     assert!(!intervals.is_empty() && intervals.is_subset(&readings), "{intervals:?}");
 }
 

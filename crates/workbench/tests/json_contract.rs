@@ -228,8 +228,8 @@ fn check_compares_tracking_limits_with_their_requirements() {
         for side in ["required", "reached"] {
             assert_eq!(number(row, &format!("{side}.settling_band_percent")), 1.0);
         }
-        assert_eq!(number(row, "wished.overshoot_percent"), overshoot);
-        assert_eq!(number(row, "wished.settling_time_s"), time);
+        assert_eq!(number(row, "required.overshoot_percent"), overshoot);
+        assert_eq!(number(row, "required.settling_time_s"), time);
         assert!((number(row, "reached.overshoot_percent") - reached[0]).abs() < 0.005);
         assert!((number(row, "reached.settling_time_s") - reached[1]).abs() < 5e-4);
     }

@@ -22,6 +22,10 @@ pub(super) enum AuditedSpecification {
 /// Finding on a limit of a closed loop over frequency.
 #[derive(Answer)]
 pub(super) struct SpecificationAnswer {
+    /// Number of the specification, from 1 in the order of the file; left out if it is no limit of
+    /// the file.
+    #[answer(optional)]
+    specification: Option<usize>,
     /// Kind of the specification.
     kind: SpecificationKind,
     /// Name of the specification, if it is not a limit of the file.
@@ -66,6 +70,8 @@ pub(super) struct SpecificationAnswer {
 /// Finding on a requirement on steps.
 #[derive(Answer)]
 pub(super) struct StepSpecificationAnswer {
+    /// Number of the specification, from 1 in the order of the file.
+    specification: usize,
     /// Kind of the specification, `step`.
     kind: SpecificationKind,
     #[answer(flatten)]
@@ -180,6 +186,7 @@ pub(super) fn in_file_order(view: &ProjectAudit) -> Vec<AuditedSpecification> {
 /// furthest beyond.
 fn step_specification(names: &PlantNames, finding: &TimeFinding) -> StepSpecificationAnswer {
     StepSpecificationAnswer {
+        specification: finding.requirement.number,
         kind: SpecificationKind::Step,
         finding: in_time(names, finding),
         plant: finding.nearest().map(|worst| names.named(&worst.plant)),
@@ -198,6 +205,7 @@ fn specification(view: &ProjectAudit, index: usize, finding: &SpecificationFindi
         worst: margin(names, &band.worst),
     });
     SpecificationAnswer {
+        specification: view.number_of(index),
         kind: SpecificationKind::ClosedLoop(finding.requirement.closed_loop()),
         name: name.map(|name| subject_words(*name)),
         verdict: finding.verdict,
