@@ -56,7 +56,7 @@ pub trait Fleet<'a> {
 /// struct Pair<'a> {
 ///     machine: &'a Machine,
 ///     start: &'a [f64],
-///     course: &'a InputSchedule,
+///     schedule: &'a InputSchedule,
 ///     left: usize,
 ///     ends: Vec<Vec<f64>>,
 /// }
@@ -69,7 +69,7 @@ pub trait Fleet<'a> {
 ///         self.left = self.left.checked_sub(1)?;
 ///         put(self.machine).ok()?;
 ///         let observer: Watcher<'a> = Box::new(Blind);
-///         Some(Task { start: self.start.to_vec(), course: self.course, sampler: None, observer })
+///         Some(Task { start: self.start.to_vec(), schedule: self.schedule, sampler: None, observer })
 ///     }
 ///     fn done(&mut self, _lane: usize, outcome: Outcome) {
 ///         self.ends.push(outcome.end);
@@ -87,8 +87,8 @@ pub trait Fleet<'a> {
 /// // command, reference, and position and velocity of the load
 /// let held_inputs = [beginning.command, 0.0].into_iter().chain(beginning.inputs);
 /// let inputs = held_inputs.map(|value| Input::Value(Profile::constant(value))).collect();
-/// let course = InputSchedule { duration_s: 0.5, output_step_s: 0.1, inputs };
-/// let mut pair = Pair { machine: &machine, start: &beginning.state, course: &course, left: 2, ends: vec![] };
+/// let schedule = InputSchedule { duration_s: 0.5, output_step_s: 0.1, inputs };
+/// let mut pair = Pair { machine: &machine, start: &beginning.state, schedule: &schedule, left: 2, ends: vec![] };
 /// one_by_one(&Control::Open(Box::new(held)), &mut pair, &SimulationSettings::default())?;
 /// assert_eq!(pair.ends.len(), 2);
 /// assert!(pair.ends.iter().all(|end| (force(&machine, end) - 3e3).abs() < 1e-3));

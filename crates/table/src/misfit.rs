@@ -20,7 +20,7 @@ impl DeclaredMisfit {
     /// ```
     /// use phea_table::DeclaredMisfit;
     /// let misfit = DeclaredMisfit { fraction: 0.0123, at: Some("force of \"a\".csv".to_string()) };
-    /// assert_eq!(misfit.in_toml(), "{ fraction = 0.0123, at = \"force of /a/.csv\" }");
+    /// assert_eq!(misfit.in_toml(), "{ share = 0.0123, at = \"force of /a/.csv\" }");
     /// ```
     pub fn in_toml(&self) -> String {
         format!("{{ {} }}", self.entries().join(", "))

@@ -33,9 +33,12 @@ pub struct DeclaredPortValve<S = f64> {
     pub cost: PartCost<S>,
 }
 
-/// Keys that declare the relief valve, and one that declares the check valve.
+/// Keys that declare a relief valve.
 const RELIEF: [&str; 2] = ["cracking_pressure", "override"];
-const CHECK: [&str; 1] = ["check_valve_pressure"];
+
+/// Each of these keys declares a valve, or the table of one side that does.
+const ONE_EACH: [[&str; 1]; 5] =
+    [["check_valve_pressure"], ["check_valve_flow"], ["check_valve_override"], ["a"], ["b"]];
 
 impl<S: TableNumber> DeclaredPortValves<S> {
     /// Visits the keys of the table.
@@ -45,7 +48,8 @@ impl<S: TableNumber> DeclaredPortValves<S> {
         v.sides(keys, &[], &mut sides, DeclaredPortValve::visit);
         [self.a, self.b] = sides;
         if sides.iter().all(|side| side.is_absent()) {
-            v.lacks(&[&RELIEF, &CHECK], "`cracking_pressure` or `check_valve_pressure`");
+            let ways = [&RELIEF[..]].into_iter().chain(ONE_EACH.iter().map(|key| &key[..]));
+            v.lacks(&ways.collect::<Vec<_>>(), "`cracking_pressure` or `check_valve_pressure`");
         }
     }
 }

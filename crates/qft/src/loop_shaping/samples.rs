@@ -62,7 +62,7 @@ pub enum SamplesError {
 /// })?;
 /// let problem = DesignProblem {
 ///     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
-///     beside: vec![],
+///     additional_plants: vec![],
 ///     sensor: TransferFunction::gain_only(1.0),
 ///     timing: Timing::default(),
 ///     specifications: vec![Specification {

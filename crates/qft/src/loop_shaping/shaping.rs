@@ -55,7 +55,7 @@ const UNSTABLE: f64 = 1.0;
 /// # })?;
 /// # let problem = DesignProblem {
 /// #     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
-/// #     beside: vec![],
+/// #     additional_plants: vec![],
 /// #     sensor: TransferFunction::gain_only(1.0),
 /// #     timing: Timing::default(),
 /// #     specifications: vec![Specification {

@@ -14,6 +14,7 @@ use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::{Line, LineModel};
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Machine, MachineOptions, PowerUnit, StartValues};
+use phea_hydraulics::outward_flow::OutwardFlow;
 use phea_hydraulics::servovalve::{
     LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
 };
@@ -89,6 +90,7 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
             vapour_pressure_absolute: 0.0,
         },
         supply: Supply { pressure, tank_pressure: 0.0 },
+        outward: OutwardFlow { external_leakage: None, port_valves: [None; 2] },
         power_unit: PowerUnit::Constant,
         valve: Servovalve {
             flow_coefficients: chance.edges(flow_coefficient),

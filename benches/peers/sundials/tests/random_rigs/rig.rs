@@ -13,6 +13,7 @@ use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::{Line, LineModel};
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Machine, MachineError, MachineOptions, PowerUnit, PumpLimited, StartValues};
+use phea_hydraulics::outward_flow::OutwardFlow;
 use phea_hydraulics::servovalve::{
     Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
 };
@@ -212,6 +213,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
     Components {
         fluid,
         supply: Supply { pressure, tank_pressure },
+        outward: OutwardFlow { external_leakage: None, port_valves: [None; 2] },
         power_unit: PowerUnit::Constant,
         valve: Servovalve {
             flow_coefficients: chance.edges(flow_coefficient),

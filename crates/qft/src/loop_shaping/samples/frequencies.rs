@@ -59,7 +59,7 @@ const PEAKS_MAXIMUM: usize = 80;
 /// # })?;
 /// let problem = DesignProblem {
 ///     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
-///     beside: vec![],
+///     additional_plants: vec![],
 ///     sensor: TransferFunction::gain_only(1.0),
 ///     timing: Timing::default(),
 ///     specifications: vec![Specification {
