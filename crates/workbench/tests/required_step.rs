@@ -359,7 +359,7 @@ fn a_simulated_scenario_is_compared_with_its_requirement() {
     assert!(text.contains("The run satisfies what specification "), "{text}");
     let steps = events.as_array().unwrap().iter().filter(|event| event["kind"] == "reference_step");
     let worst = steps.map(|event| number(event, "metrics.overshoot_percent")).fold(0.0, f64::max);
-    near(number(&loose, "overshoot_percent"), worst, 1e-12);
+    near(number(&loose, "reached.overshoot_percent"), worst, 1e-12);
     let (tight, _, text) = of("rise_time = \"1 us\"\n");
     assert_eq!(tight["verdict"], "misses");
     assert!(text.contains("The run misses what specification "), "{text}");
