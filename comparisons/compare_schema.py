@@ -35,7 +35,7 @@ UNSEEN = {
         linkage_open linkage_four_bar_open linkage_dead_point linkage_table_rough linkage_table_short linkage_table_falling
         linkage_table_counts linkage_motor linkage_unserved linkage_units
         price_currencies stage_order stage_count stage_bench transmission_currencies transmission_two_lines transmission_without_line
-        adjustment_beside adjustment_course adjustment_ends adjustment_none adjustment_uncertain
+        adjustment_beside adjustment_course adjustment_ends adjustment_none adjustment_uncertain port_valves_transition
         ranges_reversed supply_accumulator_ranges pressure_feedback design_free_feedback pressure_feedback_without_gain pressure_feedback_beside pressure_feedback_too_fast pressure_feedback_measured design_free_feedback_measured
     """.split(),
     "numbers that a double cannot hold, infinity, and none": """
