@@ -86,7 +86,7 @@ fn runs(source: &Memory, loaded: &Loaded) -> Vec<ScenarioRun> {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Whether the proof of an audit holds in every part, in its JSON.
+/// Proof of an audit in JSON: true if it holds in every part.
 fn is_all_proven(answer: &Value) -> bool {
     let each = answer["specifications"].as_array().unwrap().iter().map(|own| &own["proven"]);
     std::iter::once(&answer["proof"]["stable"]["proven"]).chain(each).all(|proven| proven == true)

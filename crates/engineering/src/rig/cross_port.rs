@@ -1,4 +1,4 @@
-//! What a valve between the chambers costs at the operating point.
+//! Flow and loss of a valve between the chambers at the operating point.
 
 use phea_hydraulics::cross_port::CrossPort;
 

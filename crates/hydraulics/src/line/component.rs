@@ -47,12 +47,12 @@ pub struct ExpansionPressures<S = f64> {
 }
 
 impl<S: Scalar> ExpansionPressures<S> {
-    /// Those of a supply and its tank.
+    /// Pressures of a hose between a supply and its tank, Pa.
     pub fn of(supply: S, tank: S) -> ExpansionPressures<S> {
         ExpansionPressures { working: supply, operating: S::from(0.5) * (supply + tank) }
     }
 
-    /// A single pressure.
+    /// Pressures of a hose that is used at a single one, Pa.
     pub fn at(pressure: S) -> ExpansionPressures<S> {
         ExpansionPressures { working: pressure, operating: pressure }
     }

@@ -62,7 +62,7 @@ impl<S: Scalar> Valve<S> {
         }
     }
 
-    /// How its edges open: in proportion where neither lap nor saturation is stated.
+    /// Law by which its edges open: proportional if neither lap nor saturation is stated.
     fn opening(&self) -> OpeningLaw<S> {
         let Valve { lap, saturation, .. } = self;
         if lap.is_none() && saturation.is_none() {
@@ -77,7 +77,7 @@ impl<S: Scalar> Valve<S> {
     }
 }
 
-/// Whether no edge leaks: an ideal valve.
+/// True if no edge leaks: an ideal valve.
 fn is_shut<S: Scalar>(leakage: Edges<S>) -> bool {
     leakage.to_array().into_iter().all(|edge| once_read(edge).is_none())
 }

@@ -128,7 +128,7 @@ struct ResponsePointAnswer {
     standard_deviation: f64,
     /// Radius of the disc around the response that contains the true one with 95 %, in its unit.
     confidence_95: f64,
-    /// The same radius over the magnitude of the response.
+    /// Radius of the disc over the magnitude of the response.
     relative_confidence_95: f64,
 }
 
