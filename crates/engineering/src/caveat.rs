@@ -32,7 +32,7 @@ pub use outside_family::{LoopWithRig, OutsideFamily};
 
 use crate::family::shut_gas;
 use crate::project::{CrossPortKind, DeclaredSeries, Load, Project, Pump, SupplyModel};
-use crate::rig::{ChargedRange, accumulator_place, charged_range, cross_port_at_point, waves_right_to};
+use crate::rig::{ChargedRange, Rig, accumulator_place, charged_range, cross_port_at_point, waves_right_to};
 use crate::setup::Setup;
 
 /// A declared effect that the linear loop does not include.
@@ -312,10 +312,20 @@ fn cross_port(setup: &Setup<'_>) -> Option<Caveat> {
     Some(Caveat { effect, unproven: !has_range })
 }
 
-/// Caveats for relief and check valves that are open or within their transition at the operating
-/// point, and for shut relief valves that open within the pressure of the supply.
+/// Caveats for relief and check valves that small motions about the operating point do not
+/// represent, unless the plants were measured.
 fn port_valves(setup: &Setup<'_>) -> Vec<Caveat> {
     let Some(rig) = setup.rig().ok().filter(|_| !is_measured(setup.project)) else { return Vec::new() };
+    let caveat = |(side, valve): (char, ValveAtPoint)| {
+        let unproven = valve.opening == ValveOpening::InTransition;
+        Caveat { effect: UncountedEffect::PortValve { side, valve }, unproven }
+    };
+    acting_port_valves(rig).into_iter().map(caveat).collect()
+}
+
+/// Relief and check valves that are open or within their transition at the operating point, and
+/// shut relief valves that open within the pressure of the supply, each with its chamber.
+pub(crate) fn acting_port_valves(rig: &Rig) -> Vec<(char, ValveAtPoint)> {
     let components = rig.actuator.components();
     let pressures = [rig.point.pressure_a, rig.point.pressure_b];
     let sides = components.outward.port_valves.iter().zip(pressures).zip(['A', 'B']);
@@ -328,12 +338,7 @@ fn port_valves(setup: &Setup<'_>) -> Vec<Caveat> {
         (ValveOpening::Shut, PortValveKind::Relief) => valve.opens_at < components.supply.pressure,
         (ValveOpening::InTransition | ValveOpening::Open, _) => true,
     };
-    let concerned = at_point.filter(|(_, valve)| is_concerned(valve));
-    let caveat = |(side, valve): (char, ValveAtPoint)| {
-        let unproven = valve.opening == ValveOpening::InTransition;
-        Caveat { effect: UncountedEffect::PortValve { side, valve }, unproven }
-    };
-    concerned.map(caveat).collect()
+    at_point.filter(|(_, valve)| is_concerned(valve)).collect()
 }
 
 /// Path of the transition pressure of an orifice between the chambers.

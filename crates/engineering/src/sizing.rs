@@ -31,6 +31,7 @@ pub use reason::{Consequence, SizingReason};
 pub use sensitivity::{Influence, UncertainHoseNumber, sensitivity};
 pub use step::{SizedSystem, SizingStep};
 
+use phea_hydraulics::port_valves::ValveAtPoint;
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use crate::rig::LargestFlow;
@@ -68,6 +69,9 @@ pub struct Sizing {
     pub decisions: Vec<SizingStep>,
     /// Influence of the uncertainties on the best candidate of the project's stiffness model.
     pub influences: Vec<Influence>,
+    /// Relief and check valves that act within the pressure of the supply, each with its chamber;
+    /// the procedure does not include them.
+    pub port_valves: Vec<(char, ValveAtPoint)>,
     /// Other means with equal stiffness; `None` if not requested, and without an accepted hose.
     pub other_means: Option<OtherMeans>,
 }
@@ -108,6 +112,7 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
         candidates,
         decisions,
         influences: vec![],
+        port_valves: problem.port_valves.clone(),
         other_means: None,
     };
     sizing.influences = sizing.best().map(|candidate| sensitivity(problem, candidate)).unwrap_or_default();

@@ -11,6 +11,7 @@ pub(crate) use misfit::misfits_in_runs;
 use phea_engineering::caveat::{Caveat, UncountedEffect, of_models};
 use phea_engineering::setup::Setup;
 pub(crate) use rig::{outside, outside_parameters};
+pub(crate) use valve::port_valve_in_sizing;
 
 use crate::quantity::Units;
 use crate::simulate::beyond_reach;

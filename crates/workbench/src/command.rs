@@ -320,9 +320,10 @@ fn size_answer(
     let catalogue = crate::catalogue::load(source, catalogues).map_err(CommandError::Refused)?;
     let problem = sizing_problem(&setup, &catalogue)?;
     let sizing = size(&problem, question);
+    let units = &loaded.project.units;
     Ok(Unprinted {
-        document: sizing::document(&sizing, vec![]),
-        body: sizing::body(&sizing).into_object(),
+        document: sizing::document(&sizing, vec![], units),
+        body: sizing::body(&sizing, units).into_object(),
         files: sizing::files(&sizing),
         affirmative: sizing.best().is_some_and(Candidate::accepted),
     })

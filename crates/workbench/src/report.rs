@@ -300,7 +300,7 @@ fn rig_part(
 
     let mut chapters = vec![rig::chapter(project, actuator, rig)];
     if let (Some(problem), Some(sizing)) = (problem, &sizing) {
-        chapters.push(sizing::chapter(problem, sizing));
+        chapters.push(sizing::chapter(problem, sizing, &project.units));
     }
     chapters.extend(refused.map(sizing::refused));
     let appendix = vec![

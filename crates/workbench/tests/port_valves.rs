@@ -7,7 +7,7 @@ use phea_workbench::command::Request;
 use serde_json::Value;
 
 use crate::answer_schema::parsed;
-use crate::run_command::{PIPE, answer, check, derived, json, near};
+use crate::run_command::{HOSE, PIPE, answer, check, derived, json, near, size_request};
 
 const VISCOUS: &str = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
 const LOADED: &str = "operating_point.load_force=2 kN";
@@ -101,4 +101,31 @@ fn a_run_states_its_openings() {
     let occurrences = object["scenarios"][0]["occurrences"].as_array().unwrap().clone();
     let kinds: Vec<&str> = occurrences.iter().map(|one| one["kind"].as_str().unwrap()).collect();
     assert!(kinds.contains(&"relief_valve_a"), "{kinds:?}");
+}
+
+/// Sizing, whose chambers hold their oil, states every valve that acts within the supply, in text
+/// and in JSON; a valve that the supply does not open is not mentioned.
+#[test]
+fn sizing_states_the_valves_that_it_does_not_include() {
+    let warnings = |cracking: f64| {
+        let sized = answer(HOSE, &[&relief(cracking, 0.1)], &[], &size_request(None, None));
+        let all: Vec<String> = parsed(&sized.json)["warnings"]
+            .as_array()
+            .map(|all| all.iter().map(|one| one.as_str().unwrap().to_string()).collect())
+            .unwrap_or_default();
+        for sentence in &all {
+            assert!(sized.text().contains(sentence.split(':').next().unwrap()), "{sentence}");
+        }
+        all
+    };
+    assert!(warnings(90.0).is_empty());
+    let [of_a, of_b] = &warnings(60.0)[..] else { panic!("one warning a chamber") };
+    for (sentence, chamber) in [(of_a, "A"), (of_b, "B")] {
+        let begin = format!(
+            "port_valves: the relief valve of chamber {chamber} opens above 60 bar, which the supply reaches"
+        );
+        assert!(sentence.starts_with(&begin), "{sentence}");
+    }
+    let open = warnings(30.0);
+    assert!(open.iter().all(|one| one.contains("passes oil at the operating point")), "{open:?}");
 }

@@ -15,7 +15,7 @@ use phea_workbench::catalogue::Catalogue;
 use phea_workbench::engineering::rig::{ResolvedParameter, Rig};
 use phea_workbench::engineering::setup::Setup;
 use phea_workbench::engineering::simulate::ControlledMachine;
-use phea_workbench::engineering::sizing::{Question, size, sizing_problem};
+use phea_workbench::engineering::sizing::{Question, Sizing, size, sizing_problem};
 use phea_workbench::project::{self, KeyEntry, LINEAR_PARAMETERS, Loaded, Project};
 use phea_workbench::source::Memory;
 
@@ -79,7 +79,12 @@ fn computed(
         Some(all[all.find(", machine: ").unwrap()..].to_string())
     };
     let parts: [&dyn Fn() -> Option<String>; PARTS.len()] = [
-        &|| sizing().map(|problem| format!("{:?}", size(&problem, Question::Both))),
+        // a warning about a valve is not a result
+        &|| {
+            sizing().map(|problem| {
+                format!("{:?}", Sizing { port_valves: vec![], ..size(&problem, Question::Both) })
+            })
+        },
         &plant,
         &closed,
         &|| Some(format!("{:?}", setup.sensor)),

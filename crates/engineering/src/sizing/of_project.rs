@@ -9,7 +9,7 @@ use super::{
     UnlikeLines,
 };
 use crate::catalogue::{Catalogue, CatalogueKind, DASH_SIZES};
-use crate::caveat::overlap;
+use crate::caveat::{acting_port_valves, overlap};
 use crate::project::{self, HoseProperties, Load, Project, SettlingTime, Speed};
 use crate::rig::{Rig, RigError, largest_flow};
 use crate::setup::Setup;
@@ -116,6 +116,7 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
         supply_pressure: actuator.supply.pressure,
         model: components.stiffness_model,
         unlike: unlike(actuator),
+        port_valves: acting_port_valves(rig),
         hoses,
         other_means: other_means(requirement, actuator, rig),
         market_bores: DASH_SIZES.iter().map(|(name, bore)| (name.to_string(), *bore)).collect(),

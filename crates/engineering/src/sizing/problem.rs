@@ -3,6 +3,7 @@ use phea_hydraulics::line::{Hose, Line, StiffeningMember};
 use phea_hydraulics::linear::{
     LinearParameters, RequiredStiffness, proportional_gain, required_stiffness, rigid_limit_gain,
 };
+use phea_hydraulics::port_valves::ValveAtPoint;
 use phea_hydraulics::stiffness::{StiffnessModel, StrokeStiffness, chamber_compliance};
 
 use super::other_means::OtherMeansProblem;
@@ -65,6 +66,9 @@ pub struct SizingProblem {
     pub model: StiffnessModel,
     /// Difference between the declared lines; `None` if they are identical hoses.
     pub unlike: Option<UnlikeLines>,
+    /// Relief and check valves that act within the pressure of the supply, each with its chamber;
+    /// the procedure does not include them.
+    pub port_valves: Vec<(char, ValveAtPoint)>,
     /// The hoses to choose from.
     pub hoses: Vec<HoseOption>,
     /// Bores on the market other than those of the hoses, with their names, m.

@@ -60,12 +60,33 @@ pub(super) fn cross_port_orifice(
     )
 }
 
-pub(super) fn port_valve(side: char, valve: &ValveAtPoint, units: &Units) -> String {
-    let ValveAtPoint { kind, opening, pressure, opens_at, conductance, open_conductance } = *valve;
-    let (name, beyond) = match kind {
+/// A valve that the sizing procedure, in which the chambers hold their oil, does not include.
+pub(crate) fn port_valve_in_sizing(side: char, valve: &ValveAtPoint, units: &Units) -> String {
+    let (name, beyond) = name_and_direction(valve.kind);
+    let [pressure, opens_at] = [valve.pressure, valve.opens_at].map(|one| units.pressure.short(one, 4));
+    let whole = format!("port_valves: the {name} of chamber {side} opens {beyond} {opens_at}");
+    match valve.opening {
+        ValveOpening::Shut => format!(
+            "{whole}, which the supply reaches: stiffness, gain and time constant are those of a shut valve, and the largest flow is that without it"
+        ),
+        ValveOpening::InTransition | ValveOpening::Open => format!(
+            "{whole} and passes oil at the operating point, at {pressure}: sizing has every such valve shut, so move the operating point away from {opens_at}, or \
+             judge the sized hose by `verify` and a simulation"
+        ),
+    }
+}
+
+/// The name of a valve, and the direction of the pressure in which it opens.
+fn name_and_direction(kind: PortValveKind) -> (&'static str, &'static str) {
+    match kind {
         PortValveKind::Relief => ("relief valve", "above"),
         PortValveKind::Check => ("check valve", "below"),
-    };
+    }
+}
+
+pub(super) fn port_valve(side: char, valve: &ValveAtPoint, units: &Units) -> String {
+    let ValveAtPoint { kind, opening, pressure, opens_at, conductance, open_conductance } = *valve;
+    let (name, beyond) = name_and_direction(kind);
     let [pressure, opens_at] = [pressure, opens_at].map(|pressure| units.pressure.short(pressure, 4));
     let [conductance, open_conductance] = [conductance, open_conductance].map(|one| significant(one, 3));
     let whole = format!("port_valves: the {name} of chamber {side}");

@@ -8,10 +8,11 @@ use crate::figure::{
     CandidateVerdict, DisplayUnit, Figure, Nomograph, NomographBore, SizingCandidate, SizingChart,
     SizingCurve, Tornado, TornadoBar, Words,
 };
+use crate::quantity::Units;
 use crate::sizing::{document, hose_name, model_name, uncertain_name};
 use phea_hydraulics::stiffness::StiffnessModel;
 
-pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
+pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing, units: &Units) -> Chapter {
     let mut figures = vec![bores(problem, sizing), lengths(problem, sizing)];
     figures.extend(uncertain(sizing));
     let hoses = match problem.hoses.len() {
@@ -20,7 +21,7 @@ pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
     };
     let mut out = Document::default();
     out.explanation(format!("The procedure of Ledezma (2019), section 6.3, applied to {hoses} of the catalogue, once with each stiffness model; both lines alike."));
-    out.append(document(sizing, figures));
+    out.append(document(sizing, figures, units));
     Chapter::of("sizing", "Sizing of the hose", out)
 }
 

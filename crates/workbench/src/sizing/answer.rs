@@ -9,8 +9,9 @@ use phea_engineering::sizing::{
 };
 use phea_hydraulics::stiffness::StiffnessModel;
 
-use super::words::{decisions, hose_name, model_name, reason_words, uncertain_name};
+use super::words::{decisions, hose_name, model_name, reason_words, uncertain_name, warnings};
 use crate::answer::{Answer, Csv, OutputFile, Word, quoted, words};
+use crate::quantity::Units;
 use means::{OtherMeansAnswer, other_means};
 
 /// Answer of `size`.
@@ -34,6 +35,9 @@ pub(crate) struct SizeAnswer {
     /// Stiffness of the load at the rod, only of a load in series.
     #[answer(optional)]
     load_stiffness_n_per_m: Option<f64>,
+    /// Declared effects that the procedure does not include.
+    #[answer(optional)]
+    warnings: Option<Vec<String>>,
     /// Bores on the market, ascending.
     bores: Vec<SizedBoreAnswer>,
     /// Hoses with their lengths and gains: accepted ones first, then those that nothing rejects,
@@ -182,7 +186,7 @@ words! {
 }
 
 /// Answer of `size`.
-pub(crate) fn body(sizing: &Sizing) -> SizeAnswer {
+pub(crate) fn body(sizing: &Sizing, units: &Units) -> SizeAnswer {
     SizeAnswer {
         maximum_flow_m3_per_s: sizing.flow.line(),
         maximum_flow_limit: sizing.flow.limit,
@@ -192,6 +196,7 @@ pub(crate) fn body(sizing: &Sizing) -> SizeAnswer {
         pole_gain_v_per_n: sizing.pole_gain_v_per_n,
         load: sizing.load,
         load_stiffness_n_per_m: sizing.load.stiffness(),
+        warnings: Some(warnings(sizing, units)).filter(|all| !all.is_empty()),
         bores: sizing.bores.iter().map(bore).collect(),
         candidates: sizing.candidates.iter().map(candidate).collect(),
         decisions: decisions(&sizing.decisions)

@@ -8,18 +8,19 @@ use phea_engineering::sizing::{
 use super::answer::branch_name;
 use super::words::{
     coil_unknown_words, decisions, hose_name, length_words, model_name, reason_words, setting_cell,
-    uncertain_name,
+    uncertain_name, warnings,
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
 use crate::grouped::grouped;
-use crate::quantity::{DisplayUnit, LENGTH, MASS, PRESSURE, VOLUME};
+use crate::quantity::{DisplayUnit, LENGTH, MASS, PRESSURE, Units, VOLUME};
 
 /// Every decision, the candidates with the objections to them, the answer with its figures, and the
 /// uncertainties.
-pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>) -> Document {
+pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>, units: &Units) -> Document {
     let mut out = Document::default();
+    out.warnings(warnings(sizing, units));
     out.heading("Procedure (letters as in the flowchart of Ledezma 2019, section 6.3.2)");
     out.sentences(decisions(&sizing.decisions).into_iter().map(|(step, text)| format!("({step}) {text}")));
     let headings = ["", "hose", "compliance", "branch", "length", "K_H over the stroke", "K_p", "tau"];

@@ -2,14 +2,20 @@
 
 use phea_engineering::rig::{FlowLimit, LargestFlow};
 use phea_engineering::sizing::{
-    Branch, CoilUnknown, HoseName, Influence, SizedLoad, SizedSystem, SizingReason, SizingStep,
+    Branch, CoilUnknown, HoseName, Influence, SizedLoad, SizedSystem, Sizing, SizingReason, SizingStep,
     SoonerRequirement, TimeConstantOrigin, UncertainHoseNumber, UnlikeLines,
 };
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use crate::answer::significant;
+use crate::caveat::port_valve_in_sizing;
 use crate::document::Cell;
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, Units};
+
+/// Declared effects that the procedure does not include, in sentences.
+pub(crate) fn warnings(sizing: &Sizing, units: &Units) -> Vec<String> {
+    sizing.port_valves.iter().map(|(side, valve)| port_valve_in_sizing(*side, valve, units)).collect()
+}
 
 /// The model's name in the project file.
 pub(crate) fn model_name(model: StiffnessModel) -> &'static str {
