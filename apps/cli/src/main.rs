@@ -4,11 +4,8 @@
 mod arguments;
 mod changes;
 mod failure;
-mod file_system;
-mod inputs;
 mod interruption;
 mod messages;
-mod output;
 mod run;
 
 use std::process::ExitCode;

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use phea_workbench::command::Progress;
 
 use crate::failure::Failure;
-use crate::file_system::reason;
+use phea_files::reason;
 
 /// Prints to standard output. A closed pipe (`phea check rig.toml | head`) is not an error: its
 /// reader has read enough.

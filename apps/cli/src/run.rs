@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::error::ContextKind;
+use phea_files::{FileSystem, Folder, Inputs, expect_folder, reason, write, write_as};
 use phea_workbench::answer::{Answer, OutputFile};
 use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate, check_certificate_of};
 use phea_workbench::command::{
@@ -20,11 +21,8 @@ use phea_workbench::source::Destination;
 
 use crate::arguments::{Arguments, Certified, Command, Common, Several};
 use crate::failure::{DONE, Failure, NO, WRONG_INPUT};
-use crate::file_system::{FileSystem, reason};
-use crate::inputs::Inputs;
 use crate::interruption::Interruption;
 use crate::messages::{ProgressLine, print, print_error};
-use crate::output::{Folder, expect_folder, write, write_as};
 
 pub(crate) fn run(arguments: Arguments) -> ExitCode {
     let outcome = match arguments.command {

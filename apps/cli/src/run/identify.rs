@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use phea_files::{FileSystem, Inputs, write};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{
     self, FrictionRequest, IdentifyError, IdentifyRequest, LeakageModel, LineRequest, OutputNames,
@@ -13,11 +14,8 @@ use phea_workbench::quantity::{self, TIME};
 use super::{load, styled};
 use crate::arguments::{ChamberWord, IdentifyArguments, LeakageWord, SubjectWord};
 use crate::failure::Failure;
-use crate::file_system::FileSystem;
-use crate::inputs::Inputs;
 use crate::interruption::Interruption;
 use crate::messages::ProgressLine;
-use crate::output::write;
 
 /// Name of the command.
 const NAME: &str = "identify";

@@ -9,7 +9,7 @@ use crate::file_system::FileSystem;
 
 /// Files that must remain unchanged.
 #[derive(Debug, Default)]
-pub(crate) struct Inputs(Vec<InputFile>);
+pub struct Inputs(Vec<InputFile>);
 
 #[derive(Debug)]
 struct InputFile {
@@ -22,24 +22,24 @@ struct InputFile {
 
 impl Inputs {
     /// The regular files among these paths.
-    pub(crate) fn of(paths: impl IntoIterator<Item = String>) -> Inputs {
+    pub fn of(paths: impl IntoIterator<Item = String>) -> Inputs {
         Inputs(paths.into_iter().filter_map(InputFile::of).collect())
     }
 
     /// The files of projects, and the files that those name.
-    pub(crate) fn of_projects<'a>(projects: impl IntoIterator<Item = &'a Loaded>) -> Inputs {
+    pub fn of_projects<'a>(projects: impl IntoIterator<Item = &'a Loaded>) -> Inputs {
         Inputs::of(projects.into_iter().flat_map(|loaded| loaded.named_files(&FileSystem)))
     }
 
     /// Adds further paths.
-    pub(crate) fn and(mut self, paths: impl IntoIterator<Item = String>) -> Inputs {
+    pub fn and(mut self, paths: impl IntoIterator<Item = String>) -> Inputs {
         self.0.extend(Inputs::of(paths).0);
         self
     }
 
     /// Rejects a path at which a file would replace one of these: by an equal name, by one that
     /// differs only in case, through a link, or as another name of an input file.
-    pub(crate) fn reject_replacement(&self, output: &Path) -> Result<(), String> {
+    pub fn reject_replacement(&self, output: &Path) -> Result<(), String> {
         let place = resolved(output);
         let metadata = fs::metadata(&place).ok().filter(Metadata::is_file);
         let place = fs::canonicalize(&place).unwrap_or(place);
@@ -57,7 +57,7 @@ impl Inputs {
 
     /// Rejects a folder in which one of the files that may be written, by their names, would
     /// replace one of these.
-    pub(crate) fn reject_replacement_in(
+    pub fn reject_replacement_in(
         &self,
         folder: &Path,
         may_write: impl Fn(&str) -> bool,

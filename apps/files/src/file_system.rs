@@ -7,7 +7,7 @@ use phea_workbench::source::{Source, SourceError};
 const LARGEST_FILE: u64 = 256 << 20;
 
 /// The file system as the workbench's source.
-pub(crate) struct FileSystem;
+pub struct FileSystem;
 
 impl Source for FileSystem {
     fn read(&self, path: &str) -> Result<Vec<u8>, SourceError> {
@@ -57,7 +57,7 @@ fn folder_reason(path: &str) -> String {
 }
 
 /// The usual reasons, in words that are equal on every system.
-pub(crate) fn reason(error: &std::io::Error) -> String {
+pub fn reason(error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => "no such file or folder".to_string(),
         ErrorKind::PermissionDenied => "permission denied".to_string(),

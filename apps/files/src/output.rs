@@ -18,7 +18,7 @@ use crate::inputs::Inputs;
 const COLLECTED: usize = 1 << 18;
 
 /// A folder for long files, which are written as they are produced.
-pub(crate) struct Folder<'f> {
+pub struct Folder<'f> {
     path: &'f Path,
     inputs: &'f Inputs,
     begun: RefCell<Vec<PathBuf>>,
@@ -26,12 +26,12 @@ pub(crate) struct Folder<'f> {
 
 impl<'f> Folder<'f> {
     /// A folder in which no file replaces one of the inputs.
-    pub(crate) fn new(path: &'f Path, inputs: &'f Inputs) -> Folder<'f> {
+    pub fn new(path: &'f Path, inputs: &'f Inputs) -> Folder<'f> {
         Folder { path, inputs, begun: RefCell::default() }
     }
 
     /// Every begun file, once, in order; all are complete if nothing failed.
-    pub(crate) fn into_begun(self) -> Vec<PathBuf> {
+    pub fn into_begun(self) -> Vec<PathBuf> {
         self.begun.into_inner()
     }
 }
@@ -157,7 +157,7 @@ impl Unfinished for Pending {
 
 /// Rejects a folder that neither exists nor can be created, before the work whose result could not
 /// be written.
-pub(crate) fn expect_folder(folder: &Path) -> Result<(), String> {
+pub fn expect_folder(folder: &Path) -> Result<(), String> {
     let existing = folder.ancestors().find_map(|part| fs::metadata(part).ok());
     match existing {
         Some(found) if !found.is_dir() => Err(unwritten(folder, &ErrorKind::NotADirectory.into())),
@@ -168,7 +168,7 @@ pub(crate) fn expect_folder(folder: &Path) -> Result<(), String> {
 /// Writes files into a folder, drawings as SVG and as PNG, never over an input; returns their
 /// paths. All files receive their names once all are complete: after an error the folder has no new
 /// file.
-pub(crate) fn write(folder: &Path, files: &[OutputFile], inputs: &Inputs) -> Result<Vec<PathBuf>, String> {
+pub fn write(folder: &Path, files: &[OutputFile], inputs: &Inputs) -> Result<Vec<PathBuf>, String> {
     let mut complete = Vec::new();
     for file in files {
         complete.push(completed(&folder.join(&file.name), &file.bytes, inputs)?);
@@ -194,12 +194,12 @@ fn completed(path: &Path, bytes: &[u8], inputs: &Inputs) -> Result<(PathBuf, Com
 
 /// Writes a file to the given path, creating its folder if needed, and returns the path. The path
 /// of an input is rejected.
-pub(crate) fn write_as(path: &Path, file: &OutputFile, inputs: &Inputs) -> Result<PathBuf, String> {
+pub fn write_as(path: &Path, file: &OutputFile, inputs: &Inputs) -> Result<PathBuf, String> {
     let (path, complete) = completed(path, &file.bytes, inputs)?;
     complete.name().map_err(|error| unwritten(&path, &error)).map(|()| path)
 }
 
 /// Message for a file or folder that cannot be written.
-pub(crate) fn unwritten(path: &Path, error: &io::Error) -> String {
+pub fn unwritten(path: &Path, error: &io::Error) -> String {
     format!("cannot write {}: {}", path.display(), reason(error))
 }
