@@ -5,6 +5,7 @@
 //! mended.
 
 mod comparisons;
+mod python;
 mod tools;
 
 use std::fs::File;
@@ -59,8 +60,13 @@ const FIRST: [Stage; 5] = [
 const TESTS: [Stage; 1] = [("tests", tests)];
 /// Stages that run one after the other in parallel with the tests, which do not occupy all
 /// processors; their output is shown at the end.
-const ASIDE: [Stage; 4] =
-    [("doctests", doctests), ("peers", peers), ("comparisons", comparisons::run), ("wasm32", wasm32)];
+const ASIDE: [Stage; 5] = [
+    ("doctests", doctests),
+    ("peers", peers),
+    ("comparisons", comparisons::run),
+    ("python", python::run),
+    ("wasm32", wasm32),
+];
 
 /// The stages that run only if they are named.
 const NAMED: [Stage; 2] = [("mutation", mutation), ("soak", soak)];

@@ -43,6 +43,7 @@ mod impossible_steps;
 mod limit_kind;
 mod line_choice;
 pub mod line_test;
+pub mod linear_values;
 pub mod linearize;
 pub(crate) mod over_time;
 pub mod plant_names;

@@ -20,6 +20,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ("crates/workbench", "derive dynamics engineering figure hydraulics machine project qft quantity"),
     ("apps/cli", "files workbench"),
     ("apps/files", "workbench"),
+    ("apps/python", "files workbench"),
     ("fuzz", "workbench"),
     ("benches/peers/sundials", "dynamics engineering hydraulics machine project"),
     ("xtask", ""),

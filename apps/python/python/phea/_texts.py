@@ -1,0 +1,48 @@
+"""Values, paths and contents as the texts and bytes that the extension takes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeAlias
+
+Value: TypeAlias = str | float | int | bool | Sequence[Any] | Mapping[str, Any]
+PathLike: TypeAlias = str | os.PathLike[str]
+
+
+def toml(value: object) -> str:
+    """A value as it is written in a project file."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, Mapping):
+        inside = ", ".join(f'"{key}" = {toml(part)}' for key, part in value.items())
+        return "{ " + inside + " }"
+    if isinstance(value, Sequence):
+        return "[" + ", ".join(toml(part) for part in value) + "]"
+    if hasattr(value, "__float__"):
+        return repr(float(value))
+    raise TypeError(f"a value of a project is a number, a text, a list or a mapping, not {value!r}")
+
+
+def setting(path: object, value: object) -> str:
+    if not isinstance(path, str):
+        raise TypeError(f"the path of a key is a text such as 'line.length', not {path!r}")
+    return f"{path}={value if isinstance(value, str) else toml(value)}"
+
+
+def texts(paths: Sequence[PathLike]) -> list[str]:
+    if isinstance(paths, str | os.PathLike):
+        raise TypeError(f"catalogues is a list of paths, not {paths!r}")
+    return [os.fspath(path) for path in paths]
+
+
+def text_of(value: str | float | None) -> str | None:
+    return value if value is None or isinstance(value, str) else repr(float(value))
+
+
+def bytes_of(data: str | bytes) -> bytes:
+    return data.encode() if isinstance(data, str) else data

@@ -1,0 +1,161 @@
+"""Tables of numbers: columns by name, as NumPy arrays, pandas frames or Arrow tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from phea import _native
+from phea._extras import imported
+
+if TYPE_CHECKING:
+    import numpy as np
+    import pandas as pd
+    import pyarrow as pa
+    from numpy.typing import NDArray
+
+    Column = NDArray[np.float64] | list[str]
+
+
+class Table(Mapping[str, Any]):
+    """Table by its columns: read-only arrays of float64, and lists of texts.
+
+    A column is ``table["force_n"]`` or ``table.force_n``; its unit is the end of its name. An empty
+    cell of a column of numbers is not a number.
+
+    Examples
+    --------
+    >>> table = Table(b"time_s,force_n\\n0,1.5\\n0.1,2\\n")
+    >>> list(table), table.force_n.sum()
+    (['time_s', 'force_n'], 3.5)
+    """
+
+    __slots__ = ("_columns", "_csv")
+
+    def __init__(self, csv: bytes) -> None:
+        self._csv = csv
+        self._columns: dict[str, Any] | None = None
+
+    def _all(self) -> dict[str, Any]:
+        if self._columns is None:
+            columns = _native.columns(self._csv)
+            for column in columns.values():
+                if not isinstance(column, list):
+                    column.setflags(write=False)
+            self._columns = columns
+        return self._columns
+
+    @property
+    def csv(self) -> bytes:
+        """The table as the command writes it."""
+        return self._csv
+
+    def __getitem__(self, name: str) -> Column:
+        columns = self._all()
+        if name not in columns:
+            from difflib import get_close_matches
+
+            near = get_close_matches(name, columns, 1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            raise KeyError(f"no column is called {name!r}{hint}")
+        found: Column = columns[name]
+        return found
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        try:
+            return self[name]
+        except KeyError as error:
+            raise AttributeError(error.args[0]) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._all())
+
+    def __len__(self) -> int:
+        return len(self._all())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Table) and self._csv == other._csv
+
+    def __hash__(self) -> int:
+        return hash(self._csv)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Table, (self._csv,))
+
+    def __repr__(self) -> str:
+        columns = self._all()
+        rows = len(next(iter(columns.values()), ()))
+        return f"Table({rows} rows: {', '.join(columns)})"
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The table as a pandas frame; ``attrs["units"]`` has the SI unit of each column."""
+        pandas = imported("pandas", "pandas")
+        frame: pd.DataFrame = pandas.DataFrame(dict(self._all()))
+        frame.attrs["units"] = {name: unit_of(name) for name in self}
+        return frame
+
+    def to_arrow(self) -> pa.Table:
+        """The table as an Arrow table; each field has its SI unit in its metadata."""
+        arrow = imported("pyarrow", "pandas")
+        columns = {name: arrow.array(column) for name, column in self._all().items()}
+        fields = [
+            arrow.field(name, column.type, metadata={"unit": unit_of(name)})
+            for name, column in columns.items()
+        ]
+        table: pa.Table = arrow.table(list(columns.values()), schema=arrow.schema(fields))
+        return table
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """The table for any reader of Arrow's C stream interface, such as polars and DuckDB."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
+
+# Ends of names, the longest first, with their SI units.
+_UNITS = {
+    "n_m_s_per_rad": "N.m.s/rad",
+    "n_m_per_rad": "N.m/rad",
+    "n_s_per_m": "N.s/m",
+    "m3_per_s_pa": "m3/(s.Pa)",
+    "m3_per_pa": "m3/Pa",
+    "rad_per_s": "rad/s",
+    "v_per_n_m": "V/(N.m)",
+    "kg_per_m3": "kg/m3",
+    "n_per_m": "N/m",
+    "m3_per_s": "m3/s",
+    "v_per_n": "V/N",
+    "m_per_s": "m/s",
+    "pa_per_v": "Pa/V",
+    "per_s": "1/s",
+    "kg_m2": "kg.m2",
+    "n_m": "N.m",
+    "percent": "%",
+    "degc": "degC",
+    "deg": "deg",
+    "rad": "rad",
+    "db": "dB",
+    "hz": "Hz",
+    "kg": "kg",
+    "m2": "m2",
+    "m3": "m3",
+    "pa": "Pa",
+    "j": "J",
+    "k": "K",
+    "m": "m",
+    "n": "N",
+    "s": "s",
+    "v": "V",
+    "w": "W",
+}
+
+
+def unit_of(name: str) -> str:
+    """SI unit of a column, by the end of its name; empty for a number without a unit.
+
+    Examples
+    --------
+    >>> unit_of("pressure_a_pa"), unit_of("run")
+    ('Pa', '')
+    """
+    return next((unit for end, unit in _UNITS.items() if name.endswith("_" + end)), "")

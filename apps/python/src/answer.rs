@@ -1,0 +1,68 @@
+//! The answer of a command.
+
+use phea_workbench::answer::{Answer as CommandAnswer, OutputFile, picture_of};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+/// FinishedAnswer of a command: JSON, text and files, as the command prints and writes them.
+#[pyclass(frozen, module = "phea._native", name = "Answer")]
+pub(crate) struct FinishedAnswer {
+    answer: CommandAnswer,
+    /// Tables that the command writes while it computes them.
+    tables: Vec<OutputFile>,
+    /// Reason for which the request was stopped: an exception, or `False` of the callable.
+    #[pyo3(get)]
+    stopped: Option<Py<PyAny>>,
+}
+
+impl FinishedAnswer {
+    pub(crate) fn new(
+        answer: CommandAnswer,
+        tables: Vec<OutputFile>,
+        stopped: Option<Py<PyAny>>,
+    ) -> FinishedAnswer {
+        FinishedAnswer { answer, tables, stopped }
+    }
+}
+
+#[pymethods]
+impl FinishedAnswer {
+    /// The JSON object that the command prints with `--json`.
+    #[getter]
+    fn json(&self) -> &str {
+        &self.answer.json
+    }
+
+    /// The text that the command prints.
+    #[getter]
+    fn text(&self, py: Python<'_>) -> String {
+        py.detach(|| self.answer.text())
+    }
+
+    /// True if the answer is yes.
+    #[getter]
+    fn affirmative(&self) -> bool {
+        self.answer.affirmative
+    }
+
+    /// The files that the command writes with `--out`, by name; drawings as SVG and as PNG.
+    fn files<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let drawn = py.detach(|| {
+            let pictures = self.answer.files.iter().map(picture_of);
+            pictures.collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())
+        });
+        let drawn = drawn.map_err(PyRuntimeError::new_err)?;
+        let files = PyDict::new(py);
+        for table in &self.tables {
+            files.set_item(&table.name, PyBytes::new(py, &table.bytes))?;
+        }
+        for (file, picture) in self.answer.files.iter().zip(drawn) {
+            files.set_item(&file.name, PyBytes::new(py, &file.bytes))?;
+            if let Some(picture) = picture {
+                files.set_item(&picture.name, PyBytes::new(py, &picture.bytes))?;
+            }
+        }
+        Ok(files)
+    }
+}

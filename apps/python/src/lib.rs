@@ -1,0 +1,35 @@
+//! The extension of the Python package `phea`: projects, requests and answers as Python objects.
+//!
+//! It converts and computes nothing: `phea_workbench` answers, and the modules in `python/phea`
+//! give every answer its class. The interface is described in `python/phea/_native.pyi`.
+
+mod answer;
+mod columns;
+mod failure;
+mod linear;
+mod project;
+mod request;
+mod several;
+mod watch;
+
+/// The extension module.
+#[pyo3::pymodule(gil_used = false)]
+mod _native {
+    #[pymodule_export]
+    use crate::answer::FinishedAnswer;
+    #[pymodule_export]
+    use crate::columns::columns;
+    #[pymodule_export]
+    use crate::failure::Refused;
+    #[pymodule_export]
+    use crate::linear::{PlantFamily, transfer_functions};
+    #[pymodule_export]
+    use crate::project::HeldProject;
+
+    #[pymodule_export]
+    use crate::several::{check_certificate, compare, identify};
+
+    /// Version of phea.
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
+}

@@ -1,0 +1,30 @@
+//! The Python package: its wheel, installed into a fresh environment, types and tests.
+
+use super::{Outcome, Runner, tools};
+
+/// Builds the wheel, installs it and tests it.
+pub(super) fn run(runner: &Runner) -> Outcome {
+    if let Err(missing) = tools::python() {
+        return Outcome::Failed(missing);
+    }
+    let path = |name: &str| runner.target.join(name).to_string_lossy().into_owned();
+    let [environment, wheels, phea] = ["python", "wheels", "debug/phea"].map(path);
+    let [python, maturin] = ["python", "maturin"].map(|name| format!("{environment}/bin/{name}"));
+    let wheel = format!("build --quiet --profile dev -m apps/python/Cargo.toml --out {wheels}");
+    let steps = [
+        format!("python3 -m venv --clear {environment}"),
+        format!("{python} -m pip install --quiet -r apps/python/tests/requirements.txt"),
+        format!("{python} apps/python/generate_answers.py --check"),
+        format!("{maturin} {wheel}"),
+        format!("{python} -m pip install --quiet --no-index --find-links {wheels} phea"),
+        format!("{python} -m mypy --config-file apps/python/pyproject.toml apps/python"),
+        format!("{python} -m pytest --quiet -c apps/python/pyproject.toml apps/python/tests"),
+    ];
+    // an older wheel would be installed again
+    let _ = std::fs::remove_dir_all(&wheels);
+    let bin = format!("{environment}/bin:{}", std::env::var("PATH").unwrap_or_default());
+    let variables = [("PHEA_COMMAND", phea.as_str()), ("VIRTUAL_ENV", &environment), ("PATH", &bin)];
+    steps.iter().fold(Outcome::Passed, |outcome, step| {
+        outcome.and(|| runner.execute(&step.split(' ').collect::<Vec<_>>(), &variables))
+    })
+}
