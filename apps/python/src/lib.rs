@@ -5,6 +5,7 @@
 
 mod answer;
 mod columns;
+mod examples;
 mod failure;
 mod linear;
 mod project;
@@ -19,6 +20,8 @@ mod _native {
     use crate::answer::FinishedAnswer;
     #[pymodule_export]
     use crate::columns::columns;
+    #[pymodule_export]
+    use crate::examples::examples;
     #[pymodule_export]
     use crate::failure::Refused;
     #[pymodule_export]

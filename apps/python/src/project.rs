@@ -35,12 +35,7 @@ impl HeldProject {
         settings: Vec<String>,
         catalogues: Vec<String>,
     ) -> PyResult<HeldProject> {
-        py.detach(|| {
-            let loaded = load(&FileSystem, path, &settings, &catalogues)?;
-            let named = loaded.named_files(&FileSystem).into_iter();
-            let files = named.filter_map(|name| FileSystem.read(&name).ok().map(|bytes| (name, bytes)));
-            Ok(HeldProject::holding(files.collect(), loaded))
-        })
+        py.detach(|| HeldProject::of(load(&FileSystem, path, &settings, &catalogues)?, &FileSystem))
     }
 
     /// Reads a project from files in memory.
@@ -53,8 +48,8 @@ impl HeldProject {
         catalogues: Vec<String>,
     ) -> PyResult<HeldProject> {
         py.detach(|| {
-            let loaded = load(&memory(&files), path, &settings, &catalogues)?;
-            Ok(HeldProject::holding(files, loaded))
+            let all = memory(&files);
+            HeldProject::of(load(&all, path, &settings, &catalogues)?, &all)
         })
     }
 
@@ -149,9 +144,12 @@ impl HeldProject {
         refused(FailureKind::NoAnswer, json, text)
     }
 
-    fn holding(files: Vec<(String, Vec<u8>)>, loaded: Loaded) -> HeldProject {
-        let memory = memory(&files);
-        HeldProject { files, memory, loaded }
+    /// A project with the files that it names, and no others.
+    fn of(loaded: Loaded, source: &dyn Source) -> PyResult<HeldProject> {
+        let named = loaded.named_files(source).into_iter();
+        let files: Vec<_> =
+            named.filter_map(|name| source.read(&name).ok().map(|bytes| (name, bytes))).collect();
+        Ok(HeldProject { memory: memory(&files), files, loaded })
     }
 
     /// The answer, or the reason why there is none, and the tables that were written meanwhile.

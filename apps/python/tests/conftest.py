@@ -9,9 +9,7 @@ from pathlib import Path
 
 import pytest
 
-import phea
-
-EXAMPLES = Path(phea.__file__).parent / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 @pytest.fixture(scope="session")

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from difflib import get_close_matches
-from pathlib import Path
 
-from phea._project import Project, read
-
-_FOLDER = Path(__file__).parent / "examples"
+from phea import _native
+from phea._project import Project, loads
 
 
 def examples() -> tuple[str, ...]:
@@ -18,26 +16,23 @@ def examples() -> tuple[str, ...]:
     >>> "ybitu/hose" in examples()
     True
     """
-    return tuple(sorted(path.relative_to(_FOLDER).with_suffix("").as_posix() for path in _projects()))
+    # entries of a catalogue belong to the project that names them
+    names = (name for name in _native.examples() if not name.startswith("hoses/"))
+    return tuple(name.removesuffix(".toml") for name in names if name.endswith(".toml"))
 
 
 def example(name: str) -> Project:
-    """Example project of this name.
+    """Example project of this name, with the files that it names.
 
     Examples
     --------
     >>> example("ybitu/hose").title
-    'Ybitu test rig, load side, with high-expansion hoses'
+    'Ybitu rig, 1.5 m of HVE hose'
     """
-    path = _FOLDER / f"{name}.toml"
-    if path not in set(_projects()):
+    if name not in examples():
         near = get_close_matches(name, examples(), 1)
         hint = f"; did you mean {near[0]!r}?" if near else ""
         raise ValueError(f"no example is called {name!r}{hint}")
-    return read(path)
-
-
-def _projects() -> list[Path]:
-    # entries of a catalogue, and projects that are wrong on purpose, belong to the book
-    others = {"errors", "hoses"}
-    return [path for path in sorted(_FOLDER.rglob("*.toml")) if others.isdisjoint(path.parts)]
+    files = _native.examples()
+    path = f"{name}.toml"
+    return loads(files[path], files=files, path=path)
