@@ -8,13 +8,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 from phea import _native
 from phea._project import Project, loads, read
 from phea.errors import Interrupted, NoAnswer, ProjectError, ProjectWarning, Stopped
 
+# `typing` takes longer to import than the package.
+TYPE_CHECKING = False
+
 if TYPE_CHECKING:
+    from typing import Any
+
     from phea._examples import example, examples
     from phea._record import Answer, Interval, Record
     from phea._several import check_certificate, compare, identify

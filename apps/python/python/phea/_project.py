@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar
 
 from phea import _native
-from phea._texts import PathLike, Value, bytes_of, setting, text_of, texts
+from phea._texts import bytes_of, setting, text_of, texts
 from phea.errors import Interrupted, NoAnswer, ProjectError, ProjectWarning, Stopped
 
+# `typing` takes longer to import than the package.
+TYPE_CHECKING = False
+
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from typing import Any, Literal, TypeAlias, TypeVar
+
     from phea._native import Project as NativeProject
     from phea._record import Answer
+    from phea._texts import PathLike, Value
     from phea.answers import (
         AlternativesAnswer,
         BenchAnswer,
@@ -33,8 +38,7 @@ if TYPE_CHECKING:
     from phea.shaping import Shaping
 
     AnyAnswer = TypeVar("AnyAnswer", bound=Answer)
-
-Progress: TypeAlias = bool | Callable[[str, float], object]
+    Progress: TypeAlias = bool | Callable[[str, float], object]
 
 
 class Project:
@@ -425,7 +429,7 @@ def read(
     ProjectError
         If the project contains errors: all of them, with line and column.
     """
-    with Path(path).open("rb"):  # a missing or unreadable file is an OSError
+    with open(path, "rb"):  # a missing or unreadable file is an OSError
         settings = [setting(key, value) for key, value in (set or {}).items()]
     try:
         return _warned(_native.Project.read(os.fspath(path), settings, texts(catalogues)))

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from phea import _native
-from phea._project import Progress, Project, answered
-from phea._texts import PathLike
+from phea._project import Project, answered
 
 if TYPE_CHECKING:
+    from phea._project import Progress
+    from phea._texts import PathLike
     from phea.answers import (
         CheckCertificateAnswer,
         CompareAnswer,

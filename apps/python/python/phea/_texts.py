@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any, TypeAlias
 
-Value: TypeAlias = str | float | int | bool | Sequence[Any] | Mapping[str, Any]
-PathLike: TypeAlias = str | os.PathLike[str]
+# `typing` takes longer to import than the package.
+TYPE_CHECKING = False
+
+if TYPE_CHECKING:
+    from typing import Any, TypeAlias
+
+    Value: TypeAlias = str | float | int | bool | Sequence[Any] | Mapping[str, Any]
+    PathLike: TypeAlias = str | os.PathLike[str]
 
 
 def toml(value: object) -> str:

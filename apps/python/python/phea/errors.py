@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import json
-from typing import TYPE_CHECKING, Any
+# `typing` takes longer to import than the package.
+TYPE_CHECKING = False
 
 if TYPE_CHECKING:
+    from typing import Any
+
     from phea._record import Answer
     from phea.answers import DiagnosticAnswer
 
@@ -37,6 +39,8 @@ class ProjectError(ValueError):
     @property
     def json(self) -> dict[str, Any]:
         """The JSON object that the command prints."""
+        import json
+
         found: dict[str, Any] = json.loads(self._json)
         return found
 
