@@ -69,7 +69,7 @@ const ASIDE: [Stage; 5] = [
 ];
 
 /// The stages that run only if they are named.
-const NAMED: [Stage; 2] = [("mutation", mutation), ("soak", soak)];
+const NAMED: [Stage; 3] = [("clusters", python::clusters), ("mutation", mutation), ("soak", soak)];
 
 /// The names of all stages.
 pub(crate) fn stage_names() -> impl Iterator<Item = &'static str> {

@@ -174,12 +174,8 @@ pub(crate) enum Command {
         /// Seed of all random numbers; the seed and the index of a run determine its parameters
         #[arg(long, value_name = "S", default_value_t = 1)]
         seed: u32,
-        /// Part of the runs to simulate, such as 2/4; the tables of all parts, one after the other,
-        /// are the table of the whole campaign
-        #[arg(long, value_name = "I/N")]
-        shard: Option<String>,
         /// Index of a single run to repeat; prints its parameters as --set, and its events
-        #[arg(long, value_name = "INDEX", conflicts_with_all = ["runs", "shard"])]
+        #[arg(long, value_name = "INDEX", conflicts_with = "runs")]
         run: Option<u64>,
         /// Number of threads; the rows do not depend on it
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]

@@ -73,10 +73,9 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             let request = AlternativesRequest { files, front, sweep, points, frequencies };
             on_project(&common, &Request::Alternatives(request), None)
         }
-        Command::Campaign { common, runs, seed, shard, run, threads } => {
-            campaign::request(runs, seed, shard.as_deref(), run, (threads, common.out.is_some()))
-                .map_err(|message| Failure::wrong_input(format!("error: {message}")))
-                .and_then(|request| print_answer(common.json, campaign::answer_with_files(&common, &request)))
+        Command::Campaign { common, runs, seed, run, threads } => {
+            let request = campaign::request(runs, seed, run, (threads, common.out.is_some()));
+            print_answer(common.json, campaign::answer_with_files(&common, &request))
         }
         Command::Bench(common) => on_project(&common, &Request::Bench, None),
         Command::Identify(recorded) => print_answer(recorded.json, identify::answer_with_files(&recorded)),

@@ -66,28 +66,6 @@ fn a_torn_table_is_made_whole() {
 }
 
 #[test]
-fn parts_in_one_folder_have_files_of_their_own() {
-    let folder = folder("campaign_parts");
-    let names = |part: &str| {
-        let before: Vec<_> = fs::read_dir(&folder).unwrap().map(|file| file.unwrap().file_name()).collect();
-        let output = campaign(&folder, &["--out", ".", "--shard", part]);
-        assert_eq!(output.status.code(), Some(0), "{}", complaint(&output));
-        let after = fs::read_dir(&folder).unwrap().map(|file| file.unwrap().file_name());
-        let mut new: Vec<String> = after
-            .filter(|name| !before.contains(name))
-            .map(|name| name.to_string_lossy().into_owned())
-            .collect();
-        new.sort();
-        new
-    };
-    let first = names("1/2");
-    assert!(first.len() >= 4 && first.iter().all(|name| name.contains("-1-of-2.")), "{first:?}");
-    let second = names("2/2");
-    let expected: Vec<String> = first.iter().map(|name| name.replace("-1-of-2.", "-2-of-2.")).collect();
-    assert_eq!(second, expected);
-}
-
-#[test]
 fn obstacles_and_impossible_requests_have_plain_messages() {
     let folder = folder("campaign_words");
     fs::write(folder.join("afile"), "").expect("written");

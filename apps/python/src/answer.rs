@@ -40,6 +40,11 @@ impl FinishedAnswer {
         py.detach(|| self.answer.text())
     }
 
+    /// The text as a fragment of a page.
+    fn html(&self, py: Python<'_>) -> String {
+        py.detach(|| self.answer.document.html())
+    }
+
     /// True if the answer is yes.
     #[getter]
     fn affirmative(&self) -> bool {

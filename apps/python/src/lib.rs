@@ -4,6 +4,7 @@
 //! give every answer its class. The interface is described in `python/phea/_native.pyi`.
 
 mod answer;
+mod chunks;
 mod columns;
 mod examples;
 mod failure;
@@ -18,6 +19,8 @@ mod watch;
 mod _native {
     #[pymodule_export]
     use crate::answer::FinishedAnswer;
+    #[pymodule_export]
+    use crate::chunks::{CampaignTable, campaign_lines};
     #[pymodule_export]
     use crate::columns::columns;
     #[pymodule_export]

@@ -6,7 +6,7 @@ use phea_workbench::answer::TableFormat;
 use phea_workbench::command::{
     AlternativesRequest, CampaignRequest, CampaignRuns, FrequencyOptions, Request, SimulateRequest,
 };
-use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns};
 use phea_workbench::engineering::linearize::SweepRequest;
 use phea_workbench::engineering::shaping::{Change, RequestedChange, Shaped};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -100,11 +100,7 @@ fn campaign(options: &Options<'_, '_>, files: bool) -> PyResult<CampaignRequest>
     let effort = options.get("threads")?.map_or(all, |threads| Effort { threads, ..all });
     let runs = match options.get("run")? {
         Some(run) => CampaignRuns::One(run),
-        None => CampaignRuns::All(RequestedRuns {
-            runs: options.get("runs")?.unwrap_or_default(),
-            shard: Shard::default(),
-            effort,
-        }),
+        None => CampaignRuns::All(RequestedRuns { runs: options.get("runs")?.unwrap_or_default(), effort }),
     };
     Ok(CampaignRequest { seed: options.get("seed")?.unwrap_or(1), runs, files })
 }

@@ -23,7 +23,7 @@ mod statistics;
 mod varied;
 mod workers;
 
-pub use ledger::{RequestedRuns, RowStore, Shard};
+pub use ledger::{RequestedRuns, RowStore, lines_of_runs, stored_runs};
 pub use plan::{BeyondBox, Draw, FamilyBox, Plan};
 pub use range::VariedRange;
 pub use required::{CampaignRequirement, SatisfiedRuns};
@@ -97,14 +97,11 @@ pub enum CampaignError {
         /// Least value, SI.
         minimum: f64,
     },
-    /// The part of a campaign is invalid.
-    #[error("--shard {text}: a part has the form 2/4, the second of four")]
-    NoShard {
-        /// Text as written.
-        text: String,
-    },
+    /// The watch stopped the campaign.
+    #[error("stopped")]
+    Cancelled,
     /// The number of runs is larger than can be stored at once.
-    #[error("{runs} runs are more than {} at once: draw shards of them", ledger::MOST_RUNS)]
+    #[error("{runs} runs are more than {} at once: choose another seed for more", ledger::MOST_RUNS)]
     TooMany {
         /// Number of requested runs.
         runs: u64,

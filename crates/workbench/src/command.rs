@@ -20,7 +20,7 @@ mod verify;
 
 pub use crate::error::CommandError;
 pub use alternatives::AlternativesRequest;
-pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
+pub use campaign::{CampaignChunks, CampaignRequest, CampaignRuns, campaign_watched};
 pub use friction::{FrictionRequest, friction_watched};
 pub use identify::{IdentifyRequest, identify_watched};
 pub use line_test::{LineRequest, line_watched};

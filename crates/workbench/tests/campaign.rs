@@ -14,7 +14,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, Request};
 use phea_workbench::engineering::campaign::{
-    CampaignError, Effort, FamilyBox, Plan, RequestedRuns, Row, RowOutcome, RowStore, Shard, Summary,
+    CampaignError, Effort, FamilyBox, Plan, RequestedRuns, Row, RowOutcome, RowStore, Summary,
 };
 use phea_workbench::engineering::setup::Setup;
 use phea_workbench::engineering::simulate::{Metric, RunStatus, simulate_project};
@@ -216,8 +216,8 @@ impl RowStore for Page {
     }
 }
 
-fn request(runs: u64, shard: Shard) -> CampaignRequest {
-    let wanted = RequestedRuns { runs, shard, effort: lanes(2) };
+fn request(runs: u64) -> CampaignRequest {
+    let wanted = RequestedRuns { runs, effort: lanes(2) };
     CampaignRequest { seed: 1, runs: CampaignRuns::All(wanted), files: false }
 }
 
@@ -313,7 +313,7 @@ fn the_start_can_vary_and_fixed_keys_are_refused() {
     let source = Memory::default().with("bare.toml", bare);
     let loaded = project::read(&source, "bare.toml", &[], &[]).unwrap();
     assert_eq!(Plan::new(&source, &loaded, 1).map(|_| ()).unwrap_err(), CampaignError::Absent);
-    let request = Request::Campaign(request(3, Shard::default()));
+    let request = Request::Campaign(request(3));
     let error = command::answer(&source, &loaded, &[], &request).unwrap_err();
     assert!(command::error_json(&loaded, &request, &error).contains("the project has no [campaign]"));
 }
@@ -321,7 +321,7 @@ fn the_start_can_vary_and_fixed_keys_are_refused() {
 #[test]
 fn the_keys_of_the_answer_are_stable() {
     let loaded = load(&SHORT);
-    let request = Request::Campaign(CampaignRequest { files: true, ..request(12, Shard::default()) });
+    let request = Request::Campaign(CampaignRequest { files: true, ..request(12) });
     let answer = command::answer(&source(), &loaded, &[], &request).unwrap();
     let json: Value = parsed(&answer.json);
     assert_eq!((&json["command"], &json["seed"]), (&Value::from("campaign"), &Value::from(1)));
@@ -351,7 +351,7 @@ fn the_keys_of_the_answer_are_stable() {
 fn the_parquet_table_agrees_with_the_text() {
     let mass = "campaign.parameters.\"cylinder.moving_mass\"={ minimum = 0.001, maximum = 3, distribution = \"normal\" }";
     let loaded = load(&[&SHORT as &[&str], &[mass]].concat());
-    let requested = CampaignRequest { files: true, ..request(300, Shard::default()) };
+    let requested = CampaignRequest { files: true, ..request(300) };
     let mut page = Page::default();
     let mut go_on = |_| true;
     let answer =
@@ -391,7 +391,7 @@ fn the_parquet_table_agrees_with_the_text() {
 #[test]
 fn runs_that_do_not_settle_are_counted_next_to_the_quantiles() {
     let loaded = load(&SHORT);
-    let requested = Request::Campaign(request(20, Shard::default()));
+    let requested = Request::Campaign(request(20));
     let answer = command::answer(&source(), &loaded, &[], &requested).unwrap();
     let json: Value = parsed(&answer.json);
     let events = json["metrics"].as_array().unwrap();
@@ -430,7 +430,7 @@ fn the_worst_of_runs_that_do_not_settle_overshoots_most() {
     let loaded =
         project::read(&source, "required.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
     let plan = Plan::new(&source, &loaded, 1).unwrap();
-    let requested = RequestedRuns { runs: 20, shard: Shard::default(), effort: lanes(1) };
+    let requested = RequestedRuns { runs: 20, effort: lanes(1) };
     let rows =
         phea_workbench::engineering::campaign::campaign(&plan, requested, None, &mut |_| true).unwrap();
     let summary = Summary::of(&plan, &rows);

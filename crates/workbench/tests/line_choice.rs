@@ -4,7 +4,7 @@
 
 use crate::answer_schema::parsed;
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request, SimulateRequest};
-use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns};
 use phea_workbench::engineering::shaping::Shaped;
 use serde_json::Value;
 
@@ -121,11 +121,7 @@ fn every_command_names_the_chosen_model() {
         Request::Shape { shaped: Shaped::Controller, changes: vec![] },
         Request::Simulate(SimulateRequest::default()),
         Request::Compare,
-        of_runs(CampaignRuns::All(RequestedRuns {
-            runs: 2,
-            shard: Shard::default(),
-            effort: Effort::default(),
-        })),
+        of_runs(CampaignRuns::All(RequestedRuns { runs: 2, effort: Effort::default() })),
         of_runs(CampaignRuns::One(1)),
     ];
     let found: Vec<Value> = requests

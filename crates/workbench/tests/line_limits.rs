@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request, SimulateRequest};
-use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns};
 use serde_json::Value;
 
 use super::run_command::{HOSE, json};
@@ -164,7 +164,7 @@ fn a_campaign_lists_limits_of_lines() {
         "{HAMMER}[campaign]\nparameters = {{ \"supply.pressure\" = {{ minimum = \"99 bar\", maximum = \"101 bar\" }} }}\n"
     );
     let request = |runs| Request::Campaign(CampaignRequest { seed: 1, runs, files: false });
-    let runs = RequestedRuns { runs: 2, shard: Shard::default(), effort: Effort::default() };
+    let runs = RequestedRuns { runs: 2, effort: Effort::default() };
     let all = json(&text, &[SEGMENTS], &[], &request(CampaignRuns::All(runs)));
     let kinds: Vec<&str> =
         all["occurrences"].as_array().unwrap().iter().map(|one| one["kind"].as_str().unwrap()).collect();

@@ -9,7 +9,7 @@ use phea_workbench::command::{
     AlternativesRequest, CampaignRequest, CampaignRuns, CommandError, FrequencyOptions, Request,
     SimulateRequest,
 };
-use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns};
 use phea_workbench::engineering::linearize::SweepRequest;
 use phea_workbench::engineering::setup::Setup;
 use phea_workbench::engineering::shaping::Shaped;
@@ -81,7 +81,7 @@ load_motion = {{ kind = "smooth_step", start = "0.3 s", duration = "0.1 s", dist
 }
 
 fn campaign(files: bool) -> CampaignRequest {
-    let wanted = RequestedRuns { runs: 6, shard: Shard::default(), effort: Effort::default() };
+    let wanted = RequestedRuns { runs: 6, effort: Effort::default() };
     CampaignRequest { seed: 1, runs: CampaignRuns::All(wanted), files }
 }
 

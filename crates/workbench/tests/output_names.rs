@@ -7,7 +7,7 @@ use phea_workbench::command::{
     self, AlternativesRequest, CampaignRequest, CampaignRuns, FrequencyOptions, OutputNames, Request,
     SimulateRequest,
 };
-use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns};
 use phea_workbench::engineering::linearize::SweepRequest;
 use phea_workbench::engineering::shaping::Shaped;
 
@@ -65,12 +65,9 @@ fn files_of_runs_have_known_names() {
         let requested = SimulateRequest { frequency_response: Some(options), ..requested };
         all_are_known(CAMPAIGN, &SHORT, &Request::Simulate(requested));
     }
-    for shard in ["1/1", "2/2"] {
-        let shard = Shard::read(shard).unwrap();
-        let runs = CampaignRuns::All(RequestedRuns { runs: 4, shard, effort: Effort::default() });
-        let request = CampaignRequest { seed: 1, runs, files: true };
-        all_are_known(CAMPAIGN, &SHORT, &Request::Campaign(request));
-    }
+    let runs = CampaignRuns::All(RequestedRuns { runs: 4, effort: Effort::default() });
+    let request = CampaignRequest { seed: 1, runs, files: true };
+    all_are_known(CAMPAIGN, &SHORT, &Request::Campaign(request));
     let request = CampaignRequest { seed: 1, runs: CampaignRuns::One(0), files: true };
     all_are_known(CAMPAIGN, &SHORT, &Request::Campaign(request));
 }

@@ -14,7 +14,7 @@ use phea_workbench::audit::check_certificate;
 use phea_workbench::command::{
     self, CampaignRequest, CampaignRuns, FrequencyOptions, Request, SimulateRequest,
 };
-use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns};
 use phea_workbench::engineering::linearize::SweepRequest;
 use phea_workbench::engineering::shaping::Shaped;
 use phea_workbench::project;
@@ -237,7 +237,7 @@ fn campaign() {
         "scenario.0.load_motion.start=0.2 s",
         "scenario.0.load_motion.duration=50 ms",
     ];
-    let all = RequestedRuns { runs: 12, shard: Shard::default(), effort: Effort { threads: 2, lanes: true } };
+    let all = RequestedRuns { runs: 12, effort: Effort { threads: 2, lanes: true } };
     agree(&[CAMPAIGN], &short, &request(CampaignRuns::All(all)));
     agree(&[CAMPAIGN], &short, &request(CampaignRuns::One(1)));
 }

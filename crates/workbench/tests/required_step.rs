@@ -7,7 +7,7 @@ use crate::answer_schema::parsed;
 use crate::run_command::{self, near, number};
 use num_complex::Complex64;
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request};
-use phea_workbench::engineering::campaign::{Effort, RequestedRuns, SatisfiedRuns, Shard};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, SatisfiedRuns};
 use serde_json::Value;
 
 const STABILITY: &str = "[[specification]]\nkind = \"robust_stability\"\nlimit = 10\nfrequencies = [1]\n";
@@ -221,7 +221,7 @@ fn rig(step: &str) -> String {
 #[test]
 fn a_campaign_counts_the_runs_that_satisfy() {
     let of = |step: &str| {
-        let runs = RequestedRuns { runs: 20, shard: Shard::default(), effort: Effort::default() };
+        let runs = RequestedRuns { runs: 20, effort: Effort::default() };
         let requested = CampaignRequest { seed: 1, runs: CampaignRuns::All(runs), files: false };
         let request = Request::Campaign(requested);
         answer(&rig(step), &request).0

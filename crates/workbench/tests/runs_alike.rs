@@ -4,7 +4,7 @@
 
 use crate::answer_schema::parsed;
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request, SimulateRequest};
-use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns};
 use phea_workbench::engineering::setup::Setup;
 use phea_workbench::engineering::simulate::{Metrics, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
@@ -52,7 +52,7 @@ fn a_repeated_run_is_that_of_the_smallest_tolerance_in_every_command() {
     let campaign = format!(
         "{CONTINUOUS}\n[campaign.parameters]\n\"supply.tank_pressure\" = {{ minimum = 0, maximum = 1e-3 }}\n"
     );
-    let runs = RequestedRuns { runs: 1, shard: Shard::default(), effort: Effort::default() };
+    let runs = RequestedRuns { runs: 1, effort: Effort::default() };
     let request = CampaignRequest { seed: 1, runs: CampaignRuns::All(runs), files: false };
     let table = json(&campaign, &SLOW, &[], &Request::Campaign(request));
     let occurrences = table["occurrences"].as_array().unwrap();

@@ -17,14 +17,33 @@ pub(super) fn run(runner: &Runner) -> Outcome {
         format!("{python} apps/python/generate_answers.py --check"),
         format!("{maturin} {wheel}"),
         format!("{python} -m pip install --quiet --no-index --find-links {wheels} phea"),
-        format!("{python} -m mypy --config-file apps/python/pyproject.toml apps/python"),
-        format!("{python} -m pytest --quiet -c apps/python/pyproject.toml apps/python/tests"),
+        format!("{python} -m mypy --config-file apps/python/pyproject.toml -p phea"),
+        format!("{python} -m mypy --config-file apps/python/pyproject.toml apps/python/tests"),
+        format!(
+            "{python} -m pytest --quiet -c apps/python/pyproject.toml apps/python/tests \
+             --ignore apps/python/tests/clusters"
+        ),
     ];
     // an older wheel would be installed again
     let _ = std::fs::remove_dir_all(&wheels);
     let bin = format!("{environment}/bin:{}", std::env::var("PATH").unwrap_or_default());
     let variables = [("PHEA_COMMAND", phea.as_str()), ("VIRTUAL_ENV", &environment), ("PATH", &bin)];
+    all(runner, &steps, &variables)
+}
+
+/// Runs campaigns on Dask and on Ray, in the environment that [`run`] leaves.
+pub(super) fn clusters(runner: &Runner) -> Outcome {
+    let python = runner.target.join("python/bin/python").to_string_lossy().into_owned();
+    let steps = [
+        format!("{python} -m pip install --quiet distributed==2026.8.0 ray==2.60.0"),
+        format!("{python} -m pytest --quiet -c apps/python/pyproject.toml apps/python/tests/clusters"),
+    ];
+    all(runner, &steps, &[])
+}
+
+/// Runs commands until one fails.
+fn all(runner: &Runner, steps: &[String], variables: &[(&str, &str)]) -> Outcome {
     steps.iter().fold(Outcome::Passed, |outcome, step| {
-        outcome.and(|| runner.execute(&step.split(' ').collect::<Vec<_>>(), &variables))
+        outcome.and(|| runner.execute(&step.split(' ').collect::<Vec<_>>(), variables))
     })
 }

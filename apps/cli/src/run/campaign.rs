@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use phea_files::{Folder, Inputs, LockedTable, write};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
-use phea_workbench::engineering::campaign::{Effort, RequestedRuns, RowStore, Shard};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, RowStore};
 use phea_workbench::source::Destination;
 
 use super::{FileSystem, failed, load, refused, reject_replaced_inputs};
@@ -18,18 +18,16 @@ use crate::messages::ProgressLine;
 pub(super) fn request(
     runs: Option<u64>,
     seed: u32,
-    shard: Option<&str>,
     run: Option<u64>,
     (threads, files): (Option<u16>, bool),
-) -> Result<CampaignRequest, String> {
-    let shard = shard.map(Shard::read).transpose().map_err(|error| error.to_string())?.unwrap_or_default();
+) -> CampaignRequest {
     let all = Effort::on_all_cores();
     let effort = threads.map_or(all, |threads| Effort { threads: threads.into(), ..all });
     let chosen = match (run, runs) {
         (Some(run), _) => CampaignRuns::One(run),
-        (None, runs) => CampaignRuns::All(RequestedRuns { runs: runs.unwrap_or_default(), shard, effort }),
+        (None, runs) => CampaignRuns::All(RequestedRuns { runs: runs.unwrap_or_default(), effort }),
     };
-    Ok(CampaignRequest { seed, runs: chosen, files })
+    CampaignRequest { seed, runs: chosen, files }
 }
 
 /// The answer, and the files that were written.
@@ -45,8 +43,8 @@ pub(super) fn answer_with_files(
     let mut line = ProgressLine::default();
     let interruption = Interruption::listen();
     let mut table = match (&common.out, campaign.runs) {
-        (Some(folder), CampaignRuns::All(wanted)) => {
-            let path = folder.join(format!("{}.csv", wanted.shard.name()));
+        (Some(folder), CampaignRuns::All(_)) => {
+            let path = folder.join("runs.csv");
             Some(LockedTable::open(&path).map_err(|message| failed(&request, &loaded, &message))?)
         }
         _ => None,

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
         VerifyAnswer,
     )
 
+    from phea.linear import Family, Linear
     from phea.shaping import Shaping
 
     AnyAnswer = TypeVar("AnyAnswer", bound=Answer)
@@ -54,8 +55,6 @@ class Project:
 
     def __init__(self, native: NativeProject) -> None:
         object.__setattr__(self, "_native", native)
-
-    # -- the project itself
 
     @property
     def path(self) -> str:
@@ -146,10 +145,34 @@ class Project:
         changed = f", {len(self.settings)} settings" if self.settings else ""
         return f"Project({self.path!r}, title={self.title!r}{changed})"
 
+    def _repr_html_(self) -> str:
+        from phea._notebook import html
+
+        return html(self)
+
+    def _repr_mimebundle_(
+        self, include: Any = None, exclude: Any = None
+    ) -> dict[str, str]:
+        from phea._notebook import mimebundle
+
+        return mimebundle(self, include, exclude)
+
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a project cannot be changed: use set() for another one, not {name} = ...")
 
-    # -- the commands
+    @property
+    def linear(self) -> Linear:
+        """Transfer functions of the project, as arrays of zeros and poles."""
+        from phea.linear import Linear
+
+        return Linear(self)
+
+    @property
+    def family(self) -> Family:
+        """Family of plants: parameters, members, responses."""
+        from phea.linear import Family
+
+        return Family(self)
 
     def check(self) -> CheckAnswer:
         """Validates the project and derives every quantity: `phea check`."""

@@ -242,6 +242,18 @@ class Answer(Record):
         self._fields()
         return super().__repr__()
 
+    def _repr_html_(self) -> str:
+        from phea._notebook import html
+
+        return html(self)
+
+    def _repr_mimebundle_(
+        self, include: Any = None, exclude: Any = None
+    ) -> dict[str, str]:
+        from phea._notebook import mimebundle
+
+        return mimebundle(self, include, exclude)
+
     def __iter__(self) -> Iterator[Any]:
         raise TypeError(f"{type(self).__name__} is not a sequence; its lists are attributes")
 

@@ -12,77 +12,13 @@ use phea_dynamics::watch::{Progress, Watch};
 /// Largest number of rows that are stored at once.
 pub(super) const MOST_RUNS: u64 = 1_000_000;
 
-/// The requested part of a campaign.
+/// The requested runs of a campaign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RequestedRuns {
-    /// Number of runs of the whole campaign.
+    /// Number of runs.
     pub runs: u64,
-    /// Requested part of the campaign.
-    pub shard: Shard,
     /// Computational effort.
     pub effort: Effort,
-}
-
-/// A part of a campaign: all parts, one after the other, form the whole.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shard {
-    number: u64,
-    of: u64,
-}
-
-/// The whole campaign.
-impl Default for Shard {
-    fn default() -> Shard {
-        Shard { number: 1, of: 1 }
-    }
-}
-
-impl Shard {
-    /// Part from a text such as `2/4`, the second of four.
-    ///
-    /// # Errors
-    /// [`CampaignError::NoShard`] for any other text.
-    ///
-    /// # Example
-    /// ```
-    /// use phea_engineering::campaign::Shard;
-    /// let parts = ["1/3", "2/3", "3/3"].map(|text| Shard::read(text).map(|shard| shard.runs_of(10)));
-    /// assert_eq!(parts, [Ok(0..3), Ok(3..6), Ok(6..10)]);
-    /// assert!(Shard::read("4/3").is_err());
-    /// ```
-    pub fn read(text: &str) -> Result<Shard, CampaignError> {
-        let parts = text.split_once('/').map(|(number, of)| (number.trim().parse(), of.trim().parse()));
-        match parts {
-            Some((Ok(number), Ok(of))) if number >= 1 && number <= of && of <= MOST_RUNS => {
-                Ok(Shard { number, of })
-            }
-            _ => Err(CampaignError::NoShard { text: text.to_string() }),
-        }
-    }
-
-    /// Runs of the part, of this number in total.
-    pub fn runs_of(&self, runs: u64) -> Range<u64> {
-        let fraction = |number: u64| (u128::from(runs) * u128::from(number) / u128::from(self.of)) as u64;
-        fraction(self.number - 1)..fraction(self.number)
-    }
-
-    /// True if the part begins the table, with the header line.
-    fn begins(&self) -> bool {
-        self.number == 1
-    }
-
-    /// Name of the part's table without an extension: `runs`, or `runs-2-of-4`.
-    pub fn name(&self) -> String {
-        format!("runs{}", self.part())
-    }
-
-    /// Suffix that distinguishes the part's files from those of other parts: empty, or `-2-of-4`,
-    /// with numbers of equal length.
-    pub fn part(&self) -> String {
-        let Shard { number, of } = *self;
-        let digits = of.to_string().len();
-        if of == 1 { String::new() } else { format!("-{number:0digits$}-of-{of}") }
-    }
 }
 
 /// Store for the rows of a campaign while it runs: a text that grows at its end.
@@ -143,16 +79,15 @@ pub fn campaign(
     mut ledger: Option<&mut dyn RowStore>,
     watch: Watch<'_>,
 ) -> Result<Vec<Row>, CampaignError> {
-    let runs = wanted.shard.runs_of(wanted.runs);
-    let requested = runs.end - runs.start;
+    let requested = wanted.runs;
     if requested > MOST_RUNS {
         return Err(CampaignError::TooMany { runs: requested });
     }
     let mut rows = match ledger.as_deref_mut() {
-        Some(ledger) => resumed(plan, wanted, ledger)?,
+        Some(ledger) => resumed(plan, requested, ledger)?,
         None => vec![],
     };
-    let missing = runs.start + rows.len() as u64..runs.end;
+    let missing = rows.len() as u64..requested;
     let known = match ledger.as_deref_mut() {
         Some(ledger) => ahead(plan, &missing, ledger)?,
         None => BTreeMap::new(),
@@ -188,6 +123,45 @@ pub fn campaign(
     Ok(rows)
 }
 
+/// Lines of these runs, as a campaign stores them: the unit of work of several computers, whose
+/// lines, in the order of the runs, are the table of the whole campaign.
+///
+/// # Errors
+/// [`CampaignError::Cancelled`] if the watch stopped it.
+pub fn lines_of_runs(
+    plan: &Plan,
+    runs: Range<u64>,
+    effort: Effort,
+    watch: Watch<'_>,
+) -> Result<String, CampaignError> {
+    let requested = runs.end.saturating_sub(runs.start);
+    let mut lines = String::new();
+    let mut stored = 0;
+    let mut report_progress = |news: News| match news {
+        News::Done(done) => {
+            let fraction = done as f64 / requested.max(1) as f64;
+            Ok(watch(Progress { stage: "driving", fraction }))
+        }
+        News::Rows(more) => {
+            stored += more.len() as u64;
+            lines.extend(more.iter().map(|one| plan.columns.line(&one.row)));
+            Ok(true)
+        }
+        News::Ahead(_) => Ok(true),
+    };
+    let missing = MissingRuns { runs, known: BTreeMap::new(), forces: false };
+    run(plan, missing, effort, &mut report_progress)?;
+    if stored < requested { Err(CampaignError::Cancelled) } else { Ok(lines) }
+}
+
+/// Number of runs whose rows are stored, each verified; an empty store receives its header.
+///
+/// # Errors
+/// [`CampaignError`] if the store contains another campaign or cannot be written.
+pub fn stored_runs(plan: &Plan, requested: u64, ledger: &mut dyn RowStore) -> Result<u64, CampaignError> {
+    Ok(resumed(plan, requested, ledger)?.len() as u64)
+}
+
 /// Stored rows of these runs that are pending for earlier ones; a run whose line was altered is
 /// simulated again.
 fn ahead(
@@ -219,14 +193,12 @@ fn kept_row(plan: &Plan, run: u64, text: &str, line: usize) -> Result<Row, Campa
 
 /// The rows that are already stored; an incomplete line at the end is dropped, and an empty ledger
 /// is started.
-fn resumed(plan: &Plan, wanted: RequestedRuns, ledger: &mut dyn RowStore) -> Result<Vec<Row>, CampaignError> {
-    let runs = wanted.shard.runs_of(wanted.runs);
+fn resumed(plan: &Plan, requested: u64, ledger: &mut dyn RowStore) -> Result<Vec<Row>, CampaignError> {
     let text = ledger.stored().map_err(CampaignError::RowStore)?;
     let (whole, torn) = text.split_at(text.rfind('\n').map_or(0, |last| last + 1));
-    let header = if wanted.shard.begins() { plan.columns.header() } else { String::new() };
+    let header = plan.columns.header();
     let (mut rows, mut lines) = (Vec::new(), whole.split_terminator('\n').zip(1..));
-    if !header.is_empty()
-        && let Some((first, line)) = lines.next()
+    if let Some((first, line)) = lines.next()
         && first != header.trim_end()
     {
         return Err(match first.strip_suffix('\r') == Some(header.trim_end()) {
@@ -235,23 +207,20 @@ fn resumed(plan: &Plan, wanted: RequestedRuns, ledger: &mut dyn RowStore) -> Res
         });
     }
     for (text, line) in lines {
-        rows.push(kept_row(plan, runs.start + rows.len() as u64, text, line)?);
+        rows.push(kept_row(plan, rows.len() as u64, text, line)?);
     }
     let stored = rows.len() as u64;
-    let beginning = match (whole.is_empty(), header.is_empty()) {
-        (true, false) => header.clone(),
-        _ => plan.columns.beginning(runs.start + stored),
-    };
+    let beginning = if whole.is_empty() { header.clone() } else { plan.columns.beginning(stored) };
     if !(torn.starts_with(&beginning) || beginning.starts_with(torn)) {
         return Err(CampaignError::OtherCampaign { line: whole.lines().count() + 1 });
     }
-    if stored > runs.end - runs.start {
-        return Err(CampaignError::MoreStored { stored, requested: runs.end - runs.start });
+    if stored > requested {
+        return Err(CampaignError::MoreStored { stored, requested });
     }
     if !torn.is_empty() {
         ledger.cut(whole.len()).map_err(CampaignError::RowStore)?;
     }
-    if whole.is_empty() && !header.is_empty() {
+    if whole.is_empty() {
         ledger.append(&header).map_err(CampaignError::RowStore)?;
     }
     Ok(rows)

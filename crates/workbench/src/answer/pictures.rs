@@ -6,13 +6,7 @@ const PNG_SCALE: f64 = 2.0;
 
 /// Figures as SVG.
 pub(crate) fn picture_files(figures: &[Figure]) -> Vec<OutputFile> {
-    part_files(figures, "")
-}
-
-/// The same for a part, whose name follows that of the figure.
-pub(crate) fn part_files(figures: &[Figure], part: &str) -> Vec<OutputFile> {
-    let file =
-        |figure: &Figure| OutputFile::new(format!("{}{part}.svg", figure.name), figure.to_svg_standalone());
+    let file = |figure: &Figure| OutputFile::new(format!("{}.svg", figure.name), figure.to_svg_standalone());
     figures.iter().map(file).collect()
 }
 

@@ -194,22 +194,21 @@ struct WorstRunAnswer {
     settings: Vec<String>,
 }
 
-/// All runs or a part of them, with these warnings.
+/// All runs, with these warnings.
 pub(crate) fn body(
     plan: &Plan,
     wanted: RequestedRuns,
     (rows, summary): (usize, &Summary),
     warnings: Vec<String>,
 ) -> CampaignAnswer {
-    let runs = wanted.shard.runs_of(wanted.runs);
     let refused = summary.refused.iter();
     let early_ends = summary.early_ends.iter();
     let occurrences = summary.occurrences.iter();
     CampaignAnswer {
         scenario: plan.scenario().to_string(),
         seed: plan.seed(),
-        complete: rows as u64 == runs.end - runs.start,
-        runs: CampaignRunsAnswer { requested: wanted.runs, from: runs.start, until: runs.end, rows },
+        complete: rows as u64 == wanted.runs,
+        runs: CampaignRunsAnswer { requested: wanted.runs, from: 0, until: wanted.runs, rows },
         parameters: plan.ranges().iter().map(range).collect(),
         statuses: statuses(summary),
         refused: refused

@@ -72,8 +72,7 @@ pub(crate) fn document(
     rows: usize,
     summary: &Summary,
 ) -> Document {
-    let runs = wanted.shard.runs_of(wanted.runs);
-    let requested = runs.end - runs.start;
+    let requested = wanted.runs;
     let mut out = Document::default();
     out.line(format!("{}: {}, seed {}", plan.scenario(), counted(rows), plan.seed()));
     left_out(plan).into_iter().for_each(|sentence| out.line(sentence));

@@ -1,9 +1,9 @@
 //! Figures of a campaign: the bands of the force over time, with the worst run in them.
 
-use phea_engineering::campaign::{CampaignError, Effort, Plan, QUANTILES, Row, Shard, Summary};
+use phea_engineering::campaign::{CampaignError, Effort, Plan, QUANTILES, Row, Summary};
 use phea_engineering::simulate::{Cause, Metric, Window};
 
-use crate::answer::{OutputFile, part_files};
+use crate::answer::{OutputFile, picture_files};
 use crate::figure::{FanChart, Figure, TimeBand, TimeSeries, Words};
 use crate::over_time::measured_force;
 use crate::simulate::{around, cause_words};
@@ -115,11 +115,11 @@ fn picture(
 /// [`CampaignError`].
 pub(crate) fn files(
     plan: &Plan,
-    (shard, rows): (&Shard, &[Row]),
+    rows: &[Row],
     summary: &Summary,
 ) -> Result<Vec<OutputFile>, crate::error::CommandError> {
     let rows = plan.parquet(rows).map_err(CampaignError::RowStore)?;
-    let mut files = vec![OutputFile::new(format!("{}.parquet", shard.name()), rows)];
-    files.extend(part_files(&pictures(plan, summary)?, &shard.part()));
+    let mut files = vec![OutputFile::new("runs.parquet", rows)];
+    files.extend(picture_files(&pictures(plan, summary)?));
     Ok(files)
 }

@@ -1,6 +1,11 @@
 //! Campaigns as a command: all runs with their rows stored, or one run repeated.
 
-use phea_engineering::campaign::{CampaignError, Plan, RequestedRuns, RowStore, Summary};
+use std::borrow::Cow;
+use std::ops::Range;
+
+use phea_engineering::campaign::{
+    CampaignError, Effort, Plan, RequestedRuns, RowStore, Summary, lines_of_runs, stored_runs,
+};
 use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
 use phea_engineering::setup::Setup;
 use phea_engineering::simulate::{RunOutput, ScenarioRun, simulate_into};
@@ -13,6 +18,7 @@ use crate::caveat::misfits_in_runs;
 use crate::project::{self, Loaded};
 use crate::source::{Destination, Source};
 use phea_dynamics::simulation::Attention;
+use phea_dynamics::watch::Stopped;
 
 /// A request on the campaign that a project declares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,12 +54,8 @@ pub fn campaign_watched(
     (ledger, destination): (Option<&mut dyn RowStore>, Option<&dyn Destination>),
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
-    let identified = with_recordings(source, loaded, watch)?;
-    let loaded = identified.as_ref().unwrap_or(loaded);
-    let chosen = with_chosen_lines(source, loaded, LoopInQuestion::Given);
-    let loaded = chosen.as_ref().unwrap_or(loaded);
-    let plan = Plan::new(source, loaded, request.seed)
-        .map_err(|error| CommandError::from(error).into_refusal(source, loaded))?;
+    let (loaded, plan) = planned(source, loaded, request.seed, watch)?;
+    let loaded = loaded.as_ref();
     let wanted = match request.runs {
         CampaignRuns::All(wanted) => wanted,
         CampaignRuns::One(run) => {
@@ -63,10 +65,9 @@ pub fn campaign_watched(
     };
     let rows = phea_engineering::campaign::campaign(&plan, wanted, ledger, watch)?;
     let summary = Summary::of(&plan, &rows);
-    let runs = wanted.shard.runs_of(wanted.runs);
-    let complete = rows.len() as u64 == runs.end - runs.start;
+    let complete = rows.len() as u64 == wanted.runs;
     let files = match request.files && complete {
-        true => campaign::files(&plan, (&wanted.shard, &rows), &summary)?,
+        true => campaign::files(&plan, &rows, &summary)?,
         false => vec![],
     };
     let warnings = misfits_in_runs(&loaded.project);
@@ -77,6 +78,58 @@ pub fn campaign_watched(
         affirmative: complete,
     };
     Ok(answer.with_warnings(warnings).print("campaign", std::slice::from_ref(loaded)))
+}
+
+/// The project with the values of its recordings and the models of its lines, and the plan of its
+/// campaign.
+fn planned<'a>(
+    source: &dyn Source,
+    loaded: &'a Loaded,
+    seed: u32,
+    watch: Watch<'_>,
+) -> Result<(Cow<'a, Loaded>, Plan), CommandError> {
+    let identified = with_recordings(source, loaded, watch)?;
+    let loaded = identified.map_or(Cow::Borrowed(loaded), Cow::Owned);
+    let chosen = with_chosen_lines(source, &loaded, LoopInQuestion::Given);
+    let loaded = chosen.map_or(loaded, Cow::Owned);
+    let plan = Plan::new(source, &loaded, seed)
+        .map_err(|error| CommandError::from(error).into_refusal(source, &loaded))?;
+    Ok((loaded, plan))
+}
+
+/// Campaign whose runs several computers share in chunks.
+pub struct CampaignChunks {
+    plan: Plan,
+}
+
+impl CampaignChunks {
+    /// The campaign of a project with this seed.
+    ///
+    /// # Errors
+    /// [`CommandError`] if the project declares no campaign.
+    pub fn new(source: &dyn Source, loaded: &Loaded, seed: u32) -> Result<CampaignChunks, CommandError> {
+        let (_, plan) = planned(source, loaded, seed, &mut |_| true)?;
+        Ok(CampaignChunks { plan })
+    }
+
+    /// Number of runs whose rows are stored, each verified; an empty store receives its header.
+    ///
+    /// # Errors
+    /// [`CommandError`] if the store contains another campaign or cannot be written.
+    pub fn stored(&self, requested: u64, store: &mut dyn RowStore) -> Result<u64, CommandError> {
+        Ok(stored_runs(&self.plan, requested, store)?)
+    }
+
+    /// Lines of these runs as the table of the campaign has them.
+    ///
+    /// # Errors
+    /// [`CommandError::Stopped`] if the watch returned false.
+    pub fn lines(&self, runs: Range<u64>, effort: Effort, watch: Watch<'_>) -> Result<String, CommandError> {
+        match lines_of_runs(&self.plan, runs, effort, watch) {
+            Err(CampaignError::Cancelled) => Err(Stopped.into()),
+            lines => Ok(lines?),
+        }
+    }
 }
 
 /// A single run: its numbers as settings of the project, and the complete output of `simulate` with

@@ -72,11 +72,7 @@ impl OutputNames {
             Request::Alternatives(_) => OutputNames::of_alternatives(project),
             Request::Campaign(campaign) => match campaign.runs {
                 CampaignRuns::One(_) => OutputNames::of_scenarios(project, TableFormat::Csv),
-                CampaignRuns::All(wanted) => {
-                    let runs = wanted.shard.name();
-                    let exact = ["csv", "csv.ahead", "parquet"].map(|ending| format!("{runs}.{ending}"));
-                    OutputNames { exact: exact.to_vec(), numbered: vec![] }
-                }
+                CampaignRuns::All(_) => OutputNames::exact(&["runs.csv", "runs.csv.ahead", "runs.parquet"]),
             },
             Request::Bench => OutputNames::exact(&OF_BENCH),
             Request::Report { .. } => OutputNames::exact(&OF_DESIGN).and(&["report.html"]),

@@ -15,6 +15,12 @@ const WIDE: usize = 5;
 const LONG_MARK: usize = 24;
 
 impl Document {
+    /// The document as a fragment of a page, without a style: headings, paragraphs, tables and
+    /// figures.
+    pub fn html(&self) -> String {
+        self.markup().into_string()
+    }
+
     /// The document as HTML.
     pub(crate) fn markup(&self) -> Markup {
         html! { @for block in &self.blocks { (block.markup()) } }

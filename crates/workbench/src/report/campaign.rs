@@ -3,8 +3,8 @@
 
 use phea_dynamics::watch::{Stopped, Watch};
 use phea_engineering::campaign::{
-    CampaignError, Effort, Plan, QUANTILES, RequestedRuns, Row, Shard, Spread, Summary, VariedRange,
-    WorstRun, campaign,
+    CampaignError, Effort, Plan, QUANTILES, RequestedRuns, Row, Spread, Summary, VariedRange, WorstRun,
+    campaign,
 };
 use phea_engineering::simulate::{Cause, Metric, PerMetric, Window};
 
@@ -78,7 +78,7 @@ pub(super) fn driven(
         loaded.project.campaign.as_ref().and_then(|campaign| campaign.runs).map_or(RUNS, u64::from);
     let mut simulated = || -> Result<_, CampaignError> {
         let plan = Plan::new(source, loaded, SEED)?;
-        let of = |runs: u64| RequestedRuns { runs, shard: Shard::default(), effort: Effort::on_all_cores() };
+        let of = |runs: u64| RequestedRuns { runs, effort: Effort::on_all_cores() };
         let pilot = campaign(&plan, of(requested.min(PILOT_RUNS)), None, watch)?;
         let runs = within_budget(requested, &pilot);
         let rows = campaign(&plan, of(runs), None, watch)?;

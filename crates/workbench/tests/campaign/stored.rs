@@ -2,6 +2,7 @@
 //! campaign.
 
 use crate::answer_schema::parsed;
+use phea_workbench::command::CampaignChunks;
 use phea_workbench::engineering::campaign::RowFault;
 
 use super::*;
@@ -14,22 +15,26 @@ fn uninterrupted(loaded: &Loaded, requested: &CampaignRequest) -> Page {
 }
 
 #[test]
-fn parts_in_a_row_are_the_whole() {
+fn chunks_in_a_row_are_the_whole() {
     let loaded = load(&SHORT);
-    let whole = uninterrupted(&loaded, &request(30, Shard::default()));
+    let whole = uninterrupted(&loaded, &request(30));
     assert_eq!(whole.text.lines().count(), 31);
-    let parts = ["1/3", "2/3", "3/3"].map(|text| {
-        let mut page = Page::default();
-        resumed(&loaded, &request(30, Shard::read(text).unwrap()), &mut page).unwrap();
-        page.text
-    });
-    assert_eq!(parts.concat(), whole.text);
+    let mut page = Page::default();
+    let chunks = CampaignChunks::new(&source(), &loaded, 1).unwrap();
+    assert_eq!(chunks.stored(30, &mut page).unwrap(), 0);
+    for runs in [0..7, 7..8, 8..30] {
+        page.append(&chunks.lines(runs, lanes(1), &mut |_| true).unwrap()).unwrap();
+    }
+    assert_eq!(page.text, whole.text);
+    assert_eq!(chunks.stored(30, &mut page).unwrap(), 30);
+    let stopped = chunks.lines(0..5, lanes(1), &mut |_| false);
+    assert!(matches!(stopped, Err(CommandError::Stopped(_))), "{stopped:?}");
 }
 
 #[test]
 fn an_interrupted_campaign_continues_to_the_same_bytes() {
     let loaded = load(&SHORT);
-    let requested = request(30, Shard::default());
+    let requested = request(30);
     let mut whole = Page::default();
     let answer = resumed(&loaded, &requested, &mut whole).unwrap();
     // torn anywhere: within the header, between two rows, within a row
@@ -42,7 +47,7 @@ fn an_interrupted_campaign_continues_to_the_same_bytes() {
     }
     // appended to itself
     let mut page = Page { text: whole.text.clone() };
-    resumed(&loaded, &request(33, Shard::default()), &mut page).unwrap();
+    resumed(&loaded, &request(33), &mut page).unwrap();
     assert!(page.text.starts_with(&whole.text) && page.text.lines().count() == 34);
 }
 
@@ -85,7 +90,7 @@ impl RowStore for Pages {
 #[test]
 fn rows_stored_ahead_are_not_simulated_again() {
     let loaded = load(&SHORT);
-    let requested = request(30, Shard::default());
+    let requested = request(30);
     let whole = uninterrupted(&loaded, &requested);
     let lines: Vec<&str> = whole.text.split_inclusive('\n').collect();
     // runs 0 to 3 in the table; 2 again, 6 to 8, half of 9, and 20 of another campaign ahead of it
@@ -111,7 +116,7 @@ fn rows_stored_ahead_are_not_simulated_again() {
 #[test]
 fn stopping_leaves_whole_rows() {
     let loaded = load(&SHORT);
-    let requested = request(600, Shard::default());
+    let requested = request(600);
     let (mut page, mut calls) = (Page::default(), 0);
     let answer =
         command::campaign_watched(&source(), &loaded, &[], &requested, (Some(&mut page), None), &mut |_| {
@@ -131,7 +136,7 @@ fn stopping_leaves_whole_rows() {
 #[test]
 fn a_table_of_another_campaign_is_left_unchanged() {
     let loaded = load(&SHORT);
-    let requested = request(4, Shard::default());
+    let requested = request(4);
     let mut page = Page::default();
     resumed(&loaded, &requested, &mut page).unwrap();
     let before = page.text.clone();
@@ -141,7 +146,7 @@ fn a_table_of_another_campaign_is_left_unchanged() {
         other => panic!("{other:?}"),
     };
     assert_eq!(refused(resumed(&loaded, &other, &mut page)), CampaignError::OtherCampaign { line: 2 });
-    let fewer = request(3, Shard::default());
+    let fewer = request(3);
     assert_eq!(
         refused(resumed(&loaded, &fewer, &mut page)),
         CampaignError::MoreStored { stored: 4, requested: 3 }
@@ -166,7 +171,7 @@ fn refusal(result: Result<String, CommandError>) -> CampaignError {
 #[test]
 fn damaged_rows_are_refused_with_their_line() {
     let loaded = load(&SHORT);
-    let requested = request(6, Shard::default());
+    let requested = request(6);
     let whole = uninterrupted(&loaded, &requested);
     let lines: Vec<&str> = whole.text.split_inclusive('\n').collect();
     let with_third = |third: &str| [&lines[..3].concat(), third, &lines[4..].concat()].concat();
@@ -190,7 +195,7 @@ fn damaged_rows_are_refused_with_their_line() {
     assert_eq!(refusal(resumed(&loaded, &requested, &mut page)), CampaignError::LineEnds { line: 4 });
     // one run twice, as two writers would leave it
     let mut page = Page { text: [&whole.text, lines[1]].concat() };
-    let error = refusal(resumed(&loaded, &request(9, Shard::default()), &mut page));
+    let error = refusal(resumed(&loaded, &request(9), &mut page));
     assert!(matches!(error, CampaignError::Damaged { line: 8, fault: RowFault::OfAnotherRun }), "{error}");
     let mut page = Page { text: lines[..3].concat() };
     resumed(&loaded, &requested, &mut page).unwrap();
@@ -203,7 +208,7 @@ fn stored_numbers_are_the_drawn_ones() {
     let loaded = load(&SHORT);
     let plan = plan(&[]);
     let mut rows = plan.rows(0..3, lanes(1)).unwrap();
-    let requested = request(3, Shard::default());
+    let requested = request(3);
     resumed(&loaded, &requested, &mut Page { text: plan.table(&rows) }).unwrap();
     rows[1].values[0] = rows[1].values[0].next_up();
     let error = refusal(resumed(&loaded, &requested, &mut Page { text: plan.table(&rows) }));
