@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +27,7 @@ class Table(Mapping[str, Any]):
     Examples
     --------
     >>> table = Table(b"time_s,force_n\\n0,1.5\\n0.1,2\\n")
-    >>> list(table), table.force_n.sum()
+    >>> list(table), float(table.force_n.sum())
     (['time_s', 'force_n'], 3.5)
     """
 
@@ -90,14 +91,14 @@ class Table(Mapping[str, Any]):
         return f"Table({rows} rows: {', '.join(columns)})"
 
     def to_pandas(self) -> pd.DataFrame:
-        """The table as a pandas frame; ``attrs["units"]`` has the SI unit of each column."""
+        """The table as a pandas frame; ``attrs["units"]`` has the unit of each column."""
         pandas = imported("pandas", "pandas")
         frame: pd.DataFrame = pandas.DataFrame(dict(self._all()))
         frame.attrs["units"] = {name: unit_of(name) for name in self}
         return frame
 
     def to_arrow(self) -> pa.Table:
-        """The table as an Arrow table; each field has its SI unit in its metadata."""
+        """The table as an Arrow table; each field has its unit in its metadata."""
         arrow = imported("pyarrow", "pandas")
         columns = {name: arrow.array(column) for name, column in self._all().items()}
         fields = [
@@ -112,12 +113,14 @@ class Table(Mapping[str, Any]):
         return self.to_arrow().__arrow_c_stream__(requested_schema)
 
 
-# Ends of names, the longest first, with their SI units.
+# Ends of names, the longest first, with their units.
 _UNITS = {
     "n_m_s_per_rad": "N.m.s/rad",
     "n_m_per_rad": "N.m/rad",
     "n_s_per_m": "N.s/m",
     "m3_per_s_pa": "m3/(s.Pa)",
+    "m3_per_s_v": "m3/(s.V)",
+    "l_per_min": "L/min",
     "m3_per_pa": "m3/Pa",
     "rad_per_s": "rad/s",
     "v_per_n_m": "V/(N.m)",
@@ -132,6 +135,8 @@ _UNITS = {
     "n_m": "N.m",
     "percent": "%",
     "degc": "degC",
+    "degC": "degC",
+    "bar": "bar",
     "deg": "deg",
     "rad": "rad",
     "db": "dB",
@@ -150,12 +155,17 @@ _UNITS = {
 }
 
 
+# Place in time at the end of a name, such as that of `force_n_at_2.5_s`.
+_AT_A_TIME = re.compile(r"_at_[-+.\de]+_s$")
+
+
 def unit_of(name: str) -> str:
-    """SI unit of a column, by the end of its name; empty for a number without a unit.
+    """Unit of a column, by the end of its name; empty for a number without a unit.
 
     Examples
     --------
     >>> unit_of("pressure_a_pa"), unit_of("run")
     ('Pa', '')
     """
-    return next((unit for end, unit in _UNITS.items() if name.endswith("_" + end)), "")
+    quantity = _AT_A_TIME.sub("", name)
+    return next((unit for end, unit in _UNITS.items() if quantity.endswith("_" + end)), "")
