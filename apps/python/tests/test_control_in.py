@@ -22,6 +22,11 @@ pytestmark = pytest.mark.filterwarnings("ignore::phea.ProjectWarning")
 
 SAMPLE_TIME_S = 0.01
 
+# The same systems on every computer, and no clock.
+SAME = settings(
+    derandomize=True, database=None, deadline=None, suppress_health_check=list(HealthCheck)
+)
+
 
 @st.composite
 def factors(draw: st.DrawFn, sampled: bool | None = None) -> Factors:
@@ -109,7 +114,7 @@ def check_same(found: Factors | None, model: Factors, kind: str) -> None:
 EXACT = ("factors", "own_tf", "own_ss", "lti", "zpk")
 
 
-@settings(max_examples=3000, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(SAME, max_examples=300)
 @given(model=factors(), kind=st.sampled_from(KINDS))
 def test_random_systems_come_back_as_controllers(model: Factors, kind: str) -> None:
     project = bridge.with_controller(phea.example("qft/by_hand"), as_kind(model, kind))
@@ -123,7 +128,7 @@ def test_random_systems_come_back_as_controllers(model: Factors, kind: str) -> N
         assert bridge.controller(project).dt == (model.sample_time_s or 0.0)
 
 
-@settings(max_examples=3000, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(SAME, max_examples=100)
 @given(
     model=factors(sampled=False),
     kind=st.sampled_from(KINDS),
@@ -136,14 +141,14 @@ def test_random_systems_come_back_as_plants(model: Factors, kind: str, dead: flo
     check_same(Factors(found.gain, found.zeros, found.poles), model, kind)
 
 
-@settings(max_examples=3000, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(SAME, max_examples=50)
 @given(model=factors(sampled=False), kind=st.sampled_from(KINDS))
 def test_random_systems_come_back_as_prefilters(model: Factors, kind: str) -> None:
     project = bridge.with_prefilter(phea.example("qft/servo"), as_kind(model, kind))
     check_same(Linear(phea.loads(project.text)).prefilter, model, kind)
 
 
-@settings(max_examples=3000, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(SAME, max_examples=100)
 @given(seed=st.integers(0, 2**32 - 1), plants=st.integers(1, 4), count=st.integers(2, 40))
 def test_random_responses_come_back_as_measured_plants(seed: int, plants: int, count: int) -> None:
     random = np.random.default_rng(seed)
