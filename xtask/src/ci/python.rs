@@ -36,6 +36,7 @@ pub(super) fn clusters(runner: &Runner) -> Outcome {
     let python = runner.target.join("python/bin/python").to_string_lossy().into_owned();
     let steps = [
         format!("{python} -m pip install --quiet distributed==2026.8.0 ray==2.60.0"),
+        format!("{python} -m pytest --quiet --doctest-modules --pyargs phea"),
         format!("{python} -m pytest --quiet -c apps/python/pyproject.toml apps/python/tests/clusters"),
     ];
     all(runner, &steps, &[])

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from phea import _native
-from phea._texts import bytes_of, setting, text_of, texts
+from phea._texts import held_files, setting, text_of, texts
 from phea.errors import Interrupted, NoAnswer, ProjectError, ProjectWarning, Stopped
 
 # `typing` takes longer to import than the package.
@@ -230,8 +230,8 @@ class Project:
         --------
         >>> import phea
         >>> audit = phea.example("ybitu/hose").verify()
-        >>> audit.verdict, bool(audit), audit.specifications[0].name
-        ('violated', False, 'robust stability')
+        >>> audit.verdict, bool(audit), audit.specifications[0].kind
+        ('violated', False, 'robust_stability')
         """
         from phea.answers import VerifyAnswer
 
@@ -488,9 +488,7 @@ def loads(
     ProjectError
         If the project contains errors: all of them, with line and column.
     """
-    if not isinstance(text, str | bytes):
-        raise TypeError(f"text is the text of a project file, not {type(text).__name__}")
-    held = {path: bytes_of(text)} | {name: bytes_of(data) for name, data in (files or {}).items()}
+    held = held_files(path, text, files or {})
     settings = [setting(key, value) for key, value in (set or {}).items()]
     try:
         native = _native.Project.held(path, list(held.items()), settings, texts(catalogues))

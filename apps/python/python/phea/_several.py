@@ -10,6 +10,7 @@ from phea import _native
 from phea._project import Project, answered
 
 if TYPE_CHECKING:
+    from phea._native import Project as NativeProject
     from phea._project import Progress
     from phea._texts import PathLike
     from phea.answers import (
@@ -115,7 +116,7 @@ def identify(
         "side": side,
     }
     paths = [os.fspath(path) for path in files]
-    native = project._native if project is not None else None
+    native = _native_of(project)
     return answered(
         classes[of],
         "identify",
@@ -139,7 +140,7 @@ def check_certificate(
     from phea.answers import CheckCertificateAnswer
 
     text = certificate.decode() if isinstance(certificate, bytes) else certificate
-    native = project._native if project is not None else None
+    native = _native_of(project)
     return answered(
         CheckCertificateAnswer,
         "check-certificate",
@@ -150,3 +151,11 @@ def check_certificate(
 
 def _text(value: str | float | None) -> str | None:
     return value if value is None or isinstance(value, str) else f"{float(value)!r} s"
+
+
+def _native_of(project: Project | None) -> NativeProject | None:
+    if project is None:
+        return None
+    if not isinstance(project, Project):
+        raise TypeError(f"project is a phea.Project, not {project!r}")
+    return project._native

@@ -49,5 +49,18 @@ def text_of(value: str | float | None) -> str | None:
     return value if value is None or isinstance(value, str) else repr(float(value))
 
 
-def bytes_of(data: str | bytes) -> bytes:
-    return data.encode() if isinstance(data, str) else data
+def held_files(
+    path: str, text: str | bytes, files: Mapping[str, str | bytes]
+) -> dict[str, bytes]:
+    """Bytes of a project file and of the files that it names, by their paths."""
+    if not isinstance(path, str):
+        raise TypeError(f"path is a text, not {path!r}")
+    if not isinstance(files, Mapping):
+        raise TypeError(f"files is a mapping from paths to contents, not {files!r}")
+    contents = {path: text} | dict(files)
+    for name, data in contents.items():
+        if not isinstance(name, str) or not isinstance(data, str | bytes):
+            raise TypeError(f"a file is a text or bytes by its path, not {name!r}: {data!r}")
+    return {
+        name: data.encode() if isinstance(data, str) else data for name, data in contents.items()
+    }
