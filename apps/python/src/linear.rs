@@ -68,6 +68,20 @@ impl PlantFamily {
         found.map(|found| factors(py, &found)).transpose()
     }
 
+    /// Parts of the loop around the plant with these values, by their names; `None` without a
+    /// controller or without polynomials.
+    #[pyo3(name = "loop")]
+    fn in_loop<'py>(&self, py: Python<'py>, values: Vec<f64>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        self.check(&values)?;
+        let Some(found) = self.with(|family| family.in_loop(&values)) else { return Ok(None) };
+        let parts = PyDict::new(py);
+        parts.set_item("controller", factors(py, &found.controller)?)?;
+        parts.set_item("prefilter", factors(py, &found.prefilter)?)?;
+        parts.set_item("plant", factors(py, &found.plant)?)?;
+        parts.set_item("plant_and_sensor", factors(py, &found.plant_and_sensor)?)?;
+        Ok(Some(parts))
+    }
+
     /// Responses of the plant with these values at frequencies in rad/s.
     fn response<'py>(
         &self,

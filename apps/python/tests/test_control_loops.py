@@ -10,7 +10,6 @@ import pytest
 
 import phea
 import phea.control as bridge
-from phea import _native
 
 pytestmark = pytest.mark.filterwarnings("ignore::phea.ProjectWarning")
 
@@ -77,9 +76,8 @@ def test_overshoot_and_settling_of_the_worst_plants() -> None:
     assert info["SettlingTime"] == pytest.approx(found["worst_settling_time_s"], rel=1e-3)
 
 
-@pytest.mark.skipif(hasattr(_native.Family, "loop"), reason="every loop exists")
-@pytest.mark.parametrize("key", ["sample_time", "delay"])
-def test_loops_that_the_extension_does_not_have_are_refused(key: str) -> None:
-    timed = phea.example("qft/servo").set({f"controller.{key}": 1e-3})
+@pytest.mark.parametrize("key", ["load_velocity_feed_forward", "pressure_feedback"])
+def test_loops_with_further_paths_are_refused(key: str) -> None:
+    fed = phea.example("ybitu/hose").set({f"controller.{key}.gain": 1e-9})
     with pytest.raises(ValueError, match=rf"expected .* without {key}; found controller.{key}"):
-        bridge.loop(timed)
+        bridge.loop(fed)

@@ -10,13 +10,9 @@ import pytest
 
 import phea
 import phea.control as bridge
-from phea import _native
 from phea.linear import Factors
 
-pytestmark = [
-    pytest.mark.filterwarnings("ignore::phea.ProjectWarning"),
-    pytest.mark.skipif(not hasattr(_native.Family, "loop"), reason="needs _native.Family.loop"),
-]
+pytestmark = pytest.mark.filterwarnings("ignore::phea.ProjectWarning")
 
 T = 0.01
 LAWS = {

@@ -4,6 +4,7 @@
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
 use phea_dynamics::uncertain_plant::{PlantMember, RationalCoefficients};
 use phea_engineering::setup::Setup;
+use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::family::{Family, MeasuredPlant};
 
 use crate::command::{self, CommandError, Watch};
@@ -56,7 +57,8 @@ impl Factors {
 
 /// Transfer functions that a project declares or that follow from its rig, by their names: `plant`
 /// from the command to the force and `load_position` from the position of the load to the force,
-/// of a rig with lumped lines; `controller`, `prefilter`, `sensor`.
+/// of a rig with lumped lines; `controller`, `prefilter`, and of a sampled loop both in z as
+/// deployed; `sensor`.
 ///
 /// # Errors
 /// [`CommandError`] for a controller that is not a transfer function, or a rig that cannot be
@@ -91,6 +93,13 @@ pub fn transfer_functions(loaded: &Loaded) -> Result<Vec<(&'static str, Factors)
     if let Some(prefilter) = &setup.prefilter {
         found.push(("prefilter", Factors::of(&prefilter.transfer_function()?)));
     }
+    if let (Some(controller), Some(_)) = (&setup.controller, setup.timing.sample_time_s) {
+        let deployed = setup.compensation(controller)?;
+        found.push(("deployed_controller", Factors::of(deployed.feedback())));
+        if setup.prefilter.is_some() {
+            found.push(("deployed_prefilter", Factors::of(deployed.prefilter())));
+        }
+    }
     found.push(("sensor", Factors::of(&setup.sensor)));
     Ok(found)
 }
@@ -99,6 +108,21 @@ pub fn transfer_functions(loaded: &Loaded) -> Result<Vec<(&'static str, Factors)
 #[derive(Clone, Debug)]
 pub struct FamilyValues {
     family: Family,
+    /// Loop around the plants; `None` without a controller.
+    compensation: Option<Compensation>,
+}
+
+/// Parts of a loop around one plant, in s, or in z if the loop is sampled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopFactors {
+    /// Controller G as deployed.
+    pub controller: Factors,
+    /// Prefilter F as a step of the reference passes through it.
+    pub prefilter: Factors,
+    /// Plant P with the delay of the loop, behind the hold of a sampled loop.
+    pub plant: Factors,
+    /// P H, likewise.
+    pub plant_and_sensor: Factors,
 }
 
 /// Measured plant from the command to the force.
@@ -139,7 +163,8 @@ pub fn family_values(
     watch: Watch<'_>,
 ) -> Result<FamilyValues, CommandError> {
     let problem = command::robust_problem_of(source, loaded, watch)?;
-    Ok(FamilyValues { family: problem.family })
+    let compensation = problem.has_controller.then_some(problem.compensation);
+    Ok(FamilyValues { family: problem.family, compensation })
 }
 
 impl FamilyValues {
@@ -169,6 +194,27 @@ impl FamilyValues {
             PlantMember::Rational(plant) => Factors::of_coefficients(&plant.command, plant.dead_time_s).ok(),
             PlantMember::Responding(_) => None,
         }
+    }
+
+    /// Parts of the loop around the plant with these values; `None` without a controller, or
+    /// without polynomials. Feed-forward and inner feedback are not among them.
+    pub fn in_loop(&self, values: &[f64]) -> Option<LoopFactors> {
+        let compensation = self.compensation.as_ref()?;
+        let Family::Uncertain(family) = &self.family else { return None };
+        let [plant, with_sensor] = match compensation.member_of(family.plant(), values).ok()? {
+            Member::Continuous { plant, sensor, .. } => {
+                let path = plant.command.transfer_function().ok()?.with_dead_time(plant.dead_time_s).ok()?;
+                [path.clone(), path.series(&sensor).ok()?]
+            }
+            Member::Sampled { command, with_sensor, .. } => [command, with_sensor],
+            _ => return None,
+        };
+        Some(LoopFactors {
+            controller: Factors::of(compensation.feedback()),
+            prefilter: Factors::of(&compensation.prefilter_of_step().ok()?),
+            plant: Factors::of(&plant),
+            plant_and_sensor: Factors::of(&with_sensor),
+        })
     }
 
     /// Response from the command to the force of the plant with these values, at a frequency in

@@ -76,6 +76,15 @@ class Family:
     ) -> (
         tuple[float, NDArray[np.complex128], NDArray[np.complex128], float, float | None] | None
     ): ...
+    def loop(
+        self, values: list[float]
+    ) -> (
+        dict[
+            str,
+            tuple[float, NDArray[np.complex128], NDArray[np.complex128], float, float | None],
+        ]
+        | None
+    ): ...
     def response(
         self, values: list[float], frequencies: list[float]
     ) -> NDArray[np.complex128]: ...

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -150,38 +150,29 @@ def _parts(project: Project, member: MemberChoice | None, pade: int | None) -> _
     linear = Linear(project)
     if linear.controller is None:
         raise NoAnswer("the project has no controller", "{}")
-    family: Any = Family(project)
-    if hasattr(family._native, "loop"):
-        plant_factors(project, member)  # refuses plants without polynomials
-        found = family._native.loop(family.values_of(0 if member is None else member))
-        if found is None:
-            raise ValueError("expected a loop of transfer functions; found one that has none")
-        parts = {name: Factors(*factors) for name, factors in found.items()}
-        controller, plant = parts["controller"], parts["plant"]
-        prefilter = parts.get("prefilter", Factors(1.0))
-        both = parts["plant_and_sensor"]
-        if controller.sample_time_s is not None:
-            return _Parts(
-                controller, prefilter, rational(plant, "", None), rational(both, "", None)
-            )
-    else:
-        _only_continuous(project)
-        controller, plant = linear.controller, plant_factors(project, member)
-        prefilter = linear.prefilter or Factors(1.0)
+    _refuse_further_paths(project)
+    plant_factors(project, member)  # refuses plants without polynomials
+    family = Family(project)
+    found = family._native.loop(family.values_of(0 if member is None else member))
+    if found is None:
+        raise ValueError("expected a loop of transfer functions; found one that has none")
+    parts = {name: Factors(*factors) for name, factors in found.items()}
+    controller, prefilter, plant = parts["controller"], parts["prefilter"], parts["plant"]
+    if controller.sample_time_s is not None:
+        both = rational(parts["plant_and_sensor"], "", None)
+        return _Parts(controller, prefilter, rational(plant, "", None), both)
     plant = rational(plant, "plant", pade)
     both = product(plant, rational(linear.sensor, "sensor", pade))
     return _Parts(controller, rational(prefilter, "prefilter", pade), plant, both)
 
 
-# Keys of [controller] that change the loop.
-_MORE = ("sample_time", "delay", "load_velocity_feed_forward", "impedance", "pressure_feedback")
+# Keys of [controller] with which the loop is more than controller, plant and sensor.
+_FURTHER_PATHS = ("load_velocity_feed_forward", "impedance", "pressure_feedback")
 
 
-def _only_continuous(project: Project) -> None:
+def _refuse_further_paths(project: Project) -> None:
     stated = tomllib.loads(project.text).get("controller", {})
     paths = [setting.strip().removeprefix("controller.") for setting in project.settings]
-    for key in _MORE:
+    for key in _FURTHER_PATHS:
         if key in stated or any(path.startswith(key) for path in paths):
-            raise ValueError(
-                f"expected a continuous controller without {key}; found controller.{key}"
-            )
+            raise ValueError(f"expected a controller without {key}; found controller.{key}")
