@@ -38,6 +38,19 @@ from phea._record import Answer, Interval, Record
 VALUES = {"Number": "float", "Complex": "complex"}
 
 
+# Words by which the description of a key states that two numbers are the ends of an interval.
+OF_INTERVALS = (
+    "bounds of",
+    "ends of the band",
+    "from low to high",
+    "from the lower to the upper",
+    "interval",
+    "least and greatest",
+    "lowest and highest",
+    "smallest and largest",
+)
+
+
 def reference(schema):
     return schema["$ref"].rsplit("/", 1)[1]
 
@@ -46,8 +59,7 @@ def is_interval(schema, description):
     """True for two numbers that bound an interval, by the description of the key."""
     pair = schema.get("minItems") == schema.get("maxItems") == 2
     numbers = schema.get("items", {}).get("$ref", "").endswith("/Number")
-    words = ("from low to high", "interval", "from the lower to the upper", "lowest and highest")
-    return pair and numbers and any(word in description for word in words)
+    return pair and numbers and any(words in description.lower() for words in OF_INTERVALS)
 
 
 def annotation(schema, description=""):
@@ -67,7 +79,7 @@ def annotation(schema, description=""):
     if kind == "array":
         if is_interval(schema, description):
             return "Interval"
-        item = annotation(schema["items"])
+        item = annotation(schema["items"], description)
         count = schema.get("minItems")
         if count is not None and count == schema.get("maxItems"):
             return "tuple[" + ", ".join([item] * count) + "]"

@@ -13,7 +13,7 @@ import pytest
 
 import phea
 from phea import answers
-from phea._record import Answer, Record
+from phea._record import Answer, Record, _generated
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ def walk(value: Any, found: Any, path: str) -> int:
     """Compares JSON with attributes; returns the number of compared leaves."""
     if isinstance(value, dict) and isinstance(found, Record):
         value = {key.replace(".", "_"): part for key, part in value.items()}
-        own = {name.rstrip("_"): name for name in type(found).__annotations__ if name[0] != "_"}
+        own = {name.rstrip("_"): name for name in _generated(type(found)).__annotations__ if name[0] != "_"}
         assert set(value) <= set(own), path
         missing = {name for key, name in own.items() if key not in value}
         assert all(getattr(found, name) is None for name in missing), path

@@ -8,8 +8,9 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from phea import _native
+from phea._request import answered, translated
 from phea._texts import held_files, setting, text_of, texts
-from phea.errors import Interrupted, NoAnswer, ProjectError, ProjectWarning, Stopped
+from phea.errors import ProjectWarning
 
 # `typing` takes longer to import than the package.
 TYPE_CHECKING = False
@@ -24,18 +25,16 @@ if TYPE_CHECKING:
     from phea.answers import (
         AlternativesAnswer,
         BenchAnswer,
-        CampaignAnswer,
         CampaignRunAnswer,
         CheckAnswer,
-        DesignCommandAnswer,
         LinearizeAnswer,
         ReportAnswer,
-        SimulateAnswer,
         SizeAnswer,
         VerifyAnswer,
     )
 
     from phea.linear import Family, Linear
+    from phea.results import Campaign, Design, Simulation
     from phea.shaping import Shaping
 
     AnyAnswer = TypeVar("AnyAnswer", bound=Answer)
@@ -119,7 +118,19 @@ class Project:
         if not isinstance(values, Mapping):
             raise TypeError(f"values is a mapping from paths of keys to values, not {values!r}")
         more = [setting(path, value) for path, value in values.items()]
-        return _held(self.path, self.files, [*self.settings, *more], list(self.catalogues))
+        found = _held(self.path, self.files, [*self.settings, *more], list(self.catalogues))
+        if found._native.warnings not in ("", self._native.warnings):
+            warnings.warn(found._native.warnings, ProjectWarning, stacklevel=2)
+        return found
+
+    def with_laws_of(self, text: str | bytes) -> Project:
+        """Project with the text of a shaped or designed one, which has its controller and prefilter.
+
+        Settings of other tables stay; those of ``controller`` and ``prefilter`` are in the text.
+        """
+        kept = [one for one in self.settings if not one.startswith(("controller", "prefilter"))]
+        files = held_files(self.path, text, {**self.files, self.path: text})
+        return _held(self.path, files, kept, list(self.catalogues))
 
     def _state(self) -> tuple[Any, ...]:
         return (self.path, tuple(sorted(self.files.items())), self.settings, self.catalogues)
@@ -142,7 +153,7 @@ class Project:
         return self
 
     def __repr__(self) -> str:
-        changed = f", {len(self.settings)} settings" if self.settings else ""
+        changed = f", settings={list(self.settings)}" if self.settings else ""
         return f"Project({self.path!r}, title={self.title!r}{changed})"
 
     def _repr_html_(self) -> str:
@@ -244,7 +255,7 @@ class Project:
         repair: bool = True,
         files: bool = False,
         progress: Progress = False,
-    ) -> DesignCommandAnswer:
+    ) -> Design:
         """Finds a controller and a prefilter for the specifications: `phea design`.
 
         Parameters
@@ -258,10 +269,10 @@ class Project:
         progress
             ``True`` for a bar, or a callable that takes stage and fraction.
         """
-        from phea.answers import DesignCommandAnswer
+        from phea.results import Design
 
         options = {"seed": seed, "repair": repair, "files": files}
-        return self._ask(DesignCommandAnswer, "design", options, progress)
+        return self._ask(Design, "design", options, progress, self)
 
     def simulate(
         self,
@@ -270,7 +281,7 @@ class Project:
         figures: bool = True,
         check: bool = False,
         progress: Progress = False,
-    ) -> SimulateAnswer:
+    ) -> Simulation:
         """Simulates the nonlinear machine in every scenario: `phea simulate`.
 
         Parameters
@@ -284,10 +295,10 @@ class Project:
         progress
             ``True`` for a bar, or a callable that takes stage and fraction.
         """
-        from phea.answers import SimulateAnswer
+        from phea.results import Simulation
 
         options = {"format": format, "files": figures, "check": check}
-        return self._ask(SimulateAnswer, "simulate", options, progress)
+        return self._ask(Simulation, "simulate", options, progress)
 
     def campaign(
         self,
@@ -298,7 +309,7 @@ class Project:
         threads: int | None = None,
         files: bool = True,
         progress: Progress = False,
-    ) -> CampaignAnswer:
+    ) -> Campaign:
         """Simulates the machine many times with random parameters: `phea campaign`.
 
         Parameters
@@ -316,11 +327,11 @@ class Project:
         progress
             ``True`` for a bar, or a callable that takes stage and fraction.
         """
-        from phea.answers import CampaignAnswer
+        from phea.results import Campaign
 
         table = None if out is None else os.fspath(out)
         options = {"runs": runs, "seed": seed, "threads": threads, "files": files, "table": table}
-        return self._ask(CampaignAnswer, "campaign", options, progress)
+        return self._ask(Campaign, "campaign", options, progress, table)
 
     def campaign_run(self, run: int, *, seed: int = 1, progress: Progress = False) -> CampaignRunAnswer:
         """One run of a campaign in full, by its index: `phea campaign --run`."""
@@ -367,50 +378,16 @@ class Project:
         return Shaping(self, prefilter)
 
     def _ask(
-        self, cls: type[AnyAnswer], name: str, options: dict[str, Any], progress: Progress
+        self,
+        cls: type[AnyAnswer],
+        name: str,
+        options: dict[str, Any],
+        progress: Progress,
+        context: object = None,
     ) -> AnyAnswer:
         return answered(
-            cls, name, lambda report: self._native.answer(name, options, report), progress
+            cls, name, lambda report: self._native.answer(name, options, report), progress, context
         )
-
-
-def answered(
-    cls: type[AnyAnswer],
-    name: str,
-    request: Callable[[Callable[[str, float], object] | None], _native.Answer],
-    progress: Progress,
-) -> AnyAnswer:
-    """The answer of a request to the extension, with its exceptions turned into the package's."""
-    from phea._progress import callable_of
-
-    with callable_of(progress, name) as report:
-        try:
-            native = request(report)
-        except _native.Refused as refused:
-            raise _translated(refused) from None
-    answer = cls((native.json, native.text, native.affirmative), None, native)
-    _raise_if_stopped(native.stopped, name, answer)
-    return answer
-
-
-def _raise_if_stopped(reason: BaseException | bool | None, name: str, answer: Answer) -> None:
-    if reason is None:
-        return
-    if isinstance(reason, KeyboardInterrupt):
-        raise Interrupted(f"{name} was interrupted", answer)
-    if isinstance(reason, BaseException):
-        raise reason
-    raise Stopped(f"{name} was stopped", answer)
-
-
-def _translated(refused: _native.Refused) -> Exception:
-    """The exception of the package for one of the extension."""
-    kind, json_text, text = refused.args
-    if kind == "project":
-        return ProjectError(text, json_text)
-    if kind == "no_answer":
-        return NoAnswer(text, json_text)
-    return Stopped(text) if kind == "stopped" else OSError(text)
 
 
 def _warned(native: NativeProject) -> Project:
@@ -425,7 +402,7 @@ def _held(
     try:
         return Project(_native.Project.held(path, list(files.items()), settings, catalogues))
     except _native.Refused as refused:
-        raise _translated(refused) from None
+        raise translated(refused) from None
 
 
 def read(
@@ -457,7 +434,7 @@ def read(
     try:
         return _warned(_native.Project.read(os.fspath(path), settings, texts(catalogues)))
     except _native.Refused as refused:
-        raise _translated(refused) from None
+        raise translated(refused) from None
 
 
 def loads(
@@ -493,5 +470,5 @@ def loads(
     try:
         native = _native.Project.held(path, list(held.items()), settings, texts(catalogues))
     except _native.Refused as refused:
-        raise _translated(refused) from None
+        raise translated(refused) from None
     return _warned(native)

@@ -115,7 +115,7 @@ class Record:
         return f"{type(self).__name__}({', '.join(shown)})"
 
     def __dir__(self) -> list[str]:
-        return sorted({*super().__dir__(), *type(self).__annotations__})
+        return sorted({*super().__dir__(), *_generated(type(self)).__annotations__})
 
 
 # Attributes of every answer that do not tell it from another one.
@@ -151,8 +151,10 @@ class Answer(Record):
     ``bool(answer)`` is the yes or no of the command, which ends with status 1 for a no.
     """
 
-    __slots__ = ("_files", "_native", "_state")
+    __slots__ = ("_context", "_files", "_native", "_state")
 
+    # What a class of `phea.results` needs besides: the project, or the path of a table.
+    _context: Any
     _native: NativeAnswer | None
     _state: tuple[str, str, bool]
     _files: dict[str, bytes] | None
@@ -162,7 +164,9 @@ class Answer(Record):
         state: tuple[str, str, bool],
         files: dict[str, bytes] | None = None,
         native: NativeAnswer | None = None,
+        context: Any = None,
     ) -> None:
+        object.__setattr__(self, "_context", context)
         object.__setattr__(self, "_state", state)
         object.__setattr__(self, "_files", files)
         object.__setattr__(self, "_native", native)
@@ -236,7 +240,7 @@ class Answer(Record):
         return hash((type(self), self._state))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (type(self), (self._state, self.files))
+        return (type(self), (self._state, self.files, None, self._context))
 
     def __repr__(self) -> str:
         self._fields()
@@ -253,9 +257,6 @@ class Answer(Record):
         from phea._notebook import mimebundle
 
         return mimebundle(self, include, exclude)
-
-    def __iter__(self) -> Iterator[Any]:
-        raise TypeError(f"{type(self).__name__} is not a sequence; its lists are attributes")
 
 
 Converter = Callable[[Any], Any]
@@ -279,7 +280,13 @@ def fields_of(cls: type[Record], data: Mapping[str, Any]) -> dict[str, Any]:
 
 def _hints(cls: type[Record]) -> dict[str, Any]:
     """Types of the attributes of a class, whose annotations are texts."""
-    return {name: _evaluated(text) for name, text in cls.__annotations__.items()}
+    texts = _generated(cls).__annotations__
+    return {name: _evaluated(text) for name, text in texts.items()}
+
+
+def _generated(cls: type[Record]) -> type[Record]:
+    """The class of the schema that a class is or extends."""
+    return next(one for one in cls.__mro__ if one.__module__ == "phea.answers")
 
 
 def _evaluated(text: Any) -> Any:

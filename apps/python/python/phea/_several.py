@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from phea import _native
-from phea._project import Project, answered
+from phea._project import Project
+from phea._request import answered
 
 if TYPE_CHECKING:
     from phea._native import Project as NativeProject

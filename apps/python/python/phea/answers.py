@@ -284,7 +284,7 @@ class StatedAnswer(Record):
 
     value: float
     place: str
-    bounds: tuple[float, float] | None
+    bounds: Interval | None
     difference_percent: float | None
     contradicts: bool
 
@@ -986,8 +986,8 @@ class LinearStiffnessAnswer(Record):
     minimum_softest_wall_n_m_per_rad: float | None
     maximum_stiffest_wall_n_per_m: float | None
     maximum_stiffest_wall_n_m_per_rad: float | None
-    uniform: tuple[float, float]
-    by_volume: tuple[float, float]
+    uniform: Interval
+    by_volume: Interval
     sentence: str
 
 
@@ -1101,7 +1101,7 @@ class AgreementBandsAnswer(Record):
 
     model: str
     equation: str
-    bands_rad_per_s: tuple[tuple[float, float], ...]
+    bands_rad_per_s: tuple[Interval, ...]
 
 
 class DecompositionErrorAnswer(Record):
@@ -1295,7 +1295,7 @@ class PassivityAnswer(Record):
     passive: bool
     right_half_plane_poles: tuple[complex, ...]
     imaginary_poles: tuple[float, ...]
-    bands: tuple[tuple[float, float], ...]
+    bands: tuple[Interval, ...]
 
 
 class VirtualImpedanceAnswer(Record):
@@ -2221,7 +2221,7 @@ class ViolatedBandAnswer(Record):
         Plant with the least |T|, of a spread.
     """
 
-    band_rad_per_s: tuple[float, float]
+    band_rad_per_s: Interval
     frequency_rad_per_s: float
     margin_db: float
     plant: Plant
@@ -3074,7 +3074,7 @@ class LoopFiguresAnswer(Record):
     crossover_rad_per_s: float | None
     first_crossover_rad_per_s: float | None
     first_crossover_rad_per_s_reason: str | None
-    above_again_rad_per_s: tuple[float, float] | None
+    above_again_rad_per_s: Interval | None
     reason: str | None
 
 
@@ -3098,7 +3098,7 @@ class StructureAnswer(Record):
     """
 
     sign: float
-    gain: tuple[float, float]
+    gain: Interval
     parts: tuple[StructurePartAnswer, ...]
     name: NamedStructure | None
 
@@ -3276,7 +3276,7 @@ class ReachedStructureAnswer(Record):
     crossover_rad_per_s: float | None
     first_crossover_rad_per_s: float | None
     first_crossover_rad_per_s_reason: str | None
-    above_again_rad_per_s: tuple[float, float] | None
+    above_again_rad_per_s: Interval | None
     delay_margin_s: float | None
     high_frequency_gain_db: float | None
     relative_degree: int
@@ -6460,7 +6460,7 @@ class BenchSignalAnswer(Record):
 
     name: str
     unit: str
-    range: tuple[float, float]
+    range: Interval
 
 
 class ReversalsAnswer(Record):
@@ -6525,9 +6525,9 @@ class LineTestTableAnswer(Record):
     file: str
     rows: int
     duration_s: float
-    volume_m3: tuple[float, float] | None
-    flow_m3_per_s: tuple[float, float] | None
-    pressure_pa: tuple[float, float]
+    volume_m3: Interval | None
+    flow_m3_per_s: Interval | None
+    pressure_pa: Interval
 
 
 class BenchRecordAnswer(Record):
@@ -6953,7 +6953,7 @@ class ColumnAnswer(Record):
     read_in: str
     reversed: bool | None
     unit: str
-    range: tuple[float, float]
+    range: Interval
     gaps: int
 
 
@@ -7042,7 +7042,7 @@ class TestOilAnswer(Record):
     """
 
     stated_at_degc: float
-    recorded_degc: tuple[float, float]
+    recorded_degc: Interval
     viscosity_slope_per_degc: float
     density_slope_per_degc: float
 
@@ -8024,7 +8024,7 @@ class VaryingVelocityAnswer(Record):
     """
 
     velocity_m_per_s: float
-    velocity_range_m_per_s: tuple[float, float]
+    velocity_range_m_per_s: Interval
     rows: int
 
 
@@ -8219,7 +8219,7 @@ class PressureRiseAnswer(Record):
     file: str
     rows: int
     volume_from: VolumeSource
-    pressures_pa: tuple[float, float]
+    pressures_pa: Interval
     terms: int
     compliance: tuple[TangentComplianceAnswer, TangentComplianceAnswer, TangentComplianceAnswer]
     drift_m3_per_s: float | None

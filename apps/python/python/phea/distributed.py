@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from phea import _native
 from phea._extras import imported
-from phea._project import _translated
+from phea._request import translated
 
 if TYPE_CHECKING:
     from phea._project import Progress, Project
     from phea._record import Answer
     from phea._texts import PathLike, Value
-    from phea.answers import CampaignAnswer
+    from phea.results import Campaign
 
 __all__ = ["WorkerMismatch", "campaign", "identity", "sweep"]
 
@@ -151,7 +151,7 @@ def _lines(project: Project, seed: int, first: int, end: int) -> str:
     try:
         return _native.campaign_lines(project._native, seed, first, end, 1)
     except _native.Refused as refused:
-        raise _translated(refused) from None
+        raise translated(refused) from None
 
 
 def campaign(
@@ -163,7 +163,7 @@ def campaign(
     client: Any,
     chunk: int = _CHUNK,
     progress: Progress = False,
-) -> CampaignAnswer:
+) -> Campaign:
     """Campaign on a cluster, with the rows and the answer of `Project.campaign`.
 
     Parameters
@@ -194,7 +194,7 @@ def campaign(
             try:
                 stored = table.stored(project._native, seed, runs)
             except _native.Refused as refused:
-                raise _translated(refused) from None
+                raise translated(refused) from None
             chunks = [(first, min(first + chunk, runs)) for first in range(stored, runs, chunk)]
             arguments = [(project, seed, first, end) for first, end in chunks]
             for done in _in_order(engine.results(_lines, arguments), table.append):

@@ -54,9 +54,9 @@ class Linear:
         try:
             found = _native.transfer_functions(project._native)
         except _native.Refused as refused:
-            from phea._project import _translated
+            from phea._request import translated
 
-            raise _translated(refused) from None
+            raise translated(refused) from None
         self._functions = {name: Factors(*factors) for name, factors in found.items()}
 
     @property
@@ -143,9 +143,9 @@ class Family:
         try:
             self._native = _native.Family(project._native)
         except _native.Refused as refused:
-            from phea._project import _translated
+            from phea._request import translated
 
-            raise _translated(refused) from None
+            raise translated(refused) from None
         self.parameters = tuple(self._native.parameters)
         self.values = self._native.members
         self.values.setflags(write=False)

@@ -250,13 +250,11 @@ class Shaping:
         return Shaping(self.project, self.prefilter, self.changes[:-1])
 
     def save(self) -> Project:
-        """The project with the changed elements; everything else stays, byte for byte."""
-        from phea._project import loads
+        """The project with the changed elements; everything else of its text stays, byte for byte.
 
-        project = self.project
-        text = self.answer.files["shaped.toml"]
-        files = {name: data for name, data in project.files.items() if name != project.path}
-        return loads(text, files=files, path=project.path, catalogues=project.catalogues)
+        Settings of the project stay settings.
+        """
+        return self.project.with_laws_of(self.answer.files["shaped.toml"])
 
 
 def _text(element: Element) -> str:

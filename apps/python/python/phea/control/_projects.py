@@ -8,7 +8,8 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from phea import _native
-from phea._project import _translated, _warned
+from phea._project import _warned
+from phea._request import translated
 from phea._texts import toml
 
 if TYPE_CHECKING:
@@ -51,5 +52,5 @@ def made(
     try:
         native = _native.Project.held(path, list(held.items()), settings, catalogues)
     except _native.Refused as refused:
-        raise _translated(refused) from None
+        raise translated(refused) from None
     return _warned(native)
