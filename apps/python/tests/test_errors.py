@@ -44,6 +44,11 @@ def test_a_project_that_lacks_what_is_asked() -> None:
     assert caught.value.diagnostics
 
 
+def test_numbers_out_of_range_are_value_errors() -> None:
+    with pytest.raises(ValueError, match="at least 1, not -1"):
+        phea.example("benchmark/campaign").campaign(runs=-1)
+
+
 @pytest.mark.parametrize(
     "call",
     [

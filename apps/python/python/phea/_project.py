@@ -329,6 +329,8 @@ class Project:
         """
         from phea.results import Campaign
 
+        if isinstance(runs, int) and runs < 1:
+            raise ValueError(f"runs is at least 1, not {runs}")
         table = None if out is None else os.fspath(out)
         options = {"runs": runs, "seed": seed, "threads": threads, "files": files, "table": table}
         return self._ask(Campaign, "campaign", options, progress, table)
