@@ -8,7 +8,7 @@ pyo3::create_exception!(_native, Refused, PyException);
 /// FailureKind of a failure: it decides which exception of the package is raised.
 #[derive(Clone, Copy)]
 pub(crate) enum FailureKind {
-    /// A file of the project contains errors.
+    /// A file of the project, or a value of the request, contains errors.
     Project,
     /// A valid project lacks something that the request needs.
     NoAnswer,

@@ -224,10 +224,14 @@ impl HeldProject {
         let json = command::error_json(&self.loaded, request, error);
         match error.refusal() {
             _ if error.is_of_files() => RequestFailure::Command(FailureKind::File, json, error.to_string()),
-            // the project was accepted when it was read: it lacks what is asked of it
             report => {
                 let text = report.map_or_else(|| error.to_string(), |report| report.render(false));
-                RequestFailure::Command(FailureKind::NoAnswer, json, text)
+                let kind = match error {
+                    CommandError::Option(_) | CommandError::Shaping(_) => FailureKind::Project,
+                    // the project was accepted when it was read: it lacks what is asked of it
+                    _ => FailureKind::NoAnswer,
+                };
+                RequestFailure::Command(kind, json, text)
             }
         }
     }

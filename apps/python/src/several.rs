@@ -127,7 +127,7 @@ pub(crate) fn check_certificate(
 ) -> PyResult<FinishedAnswer> {
     let refused = |message: String| {
         let json = command::failure_json(Some("check-certificate"), None, &message);
-        RequestFailure::Command(FailureKind::NoAnswer, json, message)
+        RequestFailure::Command(FailureKind::Project, json, message)
     };
     let project = project.as_ref().map(Py::get);
     let answer = py.detach(|| {

@@ -42,6 +42,9 @@ def test_a_project_that_lacks_what_is_asked() -> None:
     with pytest.raises(phea.NoAnswer) as caught:
         servo.campaign(runs=3)
     assert caught.value.diagnostics
+    with pytest.raises(phea.ProjectError) as wrong:
+        phea.example("ybitu/hose").size(gain="3 m")
+    assert not isinstance(wrong.value, phea.NoAnswer)
 
 
 def test_numbers_out_of_range_are_value_errors() -> None:

@@ -29,8 +29,9 @@ def test_a_certificate_is_checked(run: Command, tmp_path: Path) -> None:
     path.write_bytes(certificate)
     checked = phea.check_certificate(certificate, project)
     assert checked.json_text == run.json("check-certificate", str(path), "qft/servo.toml")
-    with pytest.raises(phea.NoAnswer):
+    with pytest.raises(phea.ProjectError) as caught:
         phea.check_certificate("{}")
+    assert not isinstance(caught.value, phea.NoAnswer)
 
 
 @pytest.mark.usefixtures("in_examples")

@@ -19,7 +19,7 @@ class ProjectWarning(UserWarning):
 
 
 class ProjectError(ValueError):
-    """Errors in the files of a project, all at once.
+    """Errors in the files of a project, or in the values of a request, all at once.
 
     Attributes
     ----------
