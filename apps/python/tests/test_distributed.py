@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,19 +20,23 @@ class Engine:
         self._version = version
         self._fails_at = fails_at
         self.computed = 0
+        self.cancelled = 0
 
     def identities(self) -> dict[str, str]:
         return {"here": self._version or distributed.identity()}
 
     def results(
         self, work: Callable[..., Any], arguments: Sequence[tuple[Any, ...]]
-    ) -> Iterator[tuple[int, Any]]:
+    ) -> Generator[tuple[int, Any], None, None]:
         places = list(range(len(arguments)))
-        for place in reversed(places) if self._reverse else places:
-            if self.computed == self._fails_at:
-                raise RuntimeError("the cluster is gone")
-            self.computed += 1
-            yield place, work(*arguments[place])
+        try:
+            for place in reversed(places) if self._reverse else places:
+                if self.computed == self._fails_at:
+                    raise RuntimeError("the cluster is gone")
+                self.computed += 1
+                yield place, work(*arguments[place])
+        finally:
+            self.cancelled = len(places) - self.computed
 
 
 @pytest.fixture(scope="module")
@@ -80,10 +84,12 @@ def test_a_worker_with_another_phea_is_refused_by_name(project: phea.Project, tm
 
 def test_false_stops_and_keeps_the_rows(project: phea.Project, tmp_path: Path) -> None:
     table = tmp_path / "runs.csv"
-    with pytest.raises(phea.Stopped):
+    engine = Engine()
+    with pytest.raises(phea.Stopped) as caught:
         distributed.campaign(
-            project, runs=60, out=table, client=Engine(), chunk=10, progress=lambda _, done: done < 0.3
+            project, runs=60, out=table, client=engine, chunk=10, progress=lambda _, done: done < 0.3
         )
+    assert engine.cancelled == 4 and caught.value.answer is None
     assert table.read_bytes().count(b"\n") == 21
 
 

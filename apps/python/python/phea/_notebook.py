@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 if TYPE_CHECKING:
     from phea._project import Project
     from phea._record import Answer
+    from phea._shown import Shown
 
 # Bytes of a display, all of its formats together.
 LIMIT = 300_000
@@ -90,7 +91,7 @@ class _Figure(NamedTuple):
 Part: TypeAlias = str | _Figure
 
 
-def html(value: Answer | Project) -> str:
+def html(value: Shown) -> str:
     """Answer or project as HTML: its tables, and its figures as images.
 
     Parameters
@@ -115,7 +116,7 @@ def html(value: Answer | Project) -> str:
 
 
 def mimebundle(
-    value: Answer | Project,
+    value: Shown,
     include: Collection[str] | None = None,
     exclude: Collection[str] | None = None,
 ) -> dict[str, str]:
@@ -152,12 +153,15 @@ def mimebundle(
     return {name: bundle[name] for name in sorted(wanted - set(exclude or ()))}
 
 
-def _html(value: Answer | Project, limit: int) -> str:
+def _html(value: Shown, limit: int) -> str:
     """The fragment of at most ``limit`` bytes."""
+    from phea._project import Project
     from phea._record import Answer
 
-    if not isinstance(value, Answer):
+    if isinstance(value, Project):
         return _project(value, limit)
+    if not isinstance(value, Answer):
+        raise TypeError(f"a project or an answer is shown, not {value!r}")
     parts = _parts(_document(value))
     placed = {part.title for part in parts if isinstance(part, _Figure)}
     below: list[Part] = [figure for figure in _figures(value.figures) if figure.title not in placed]

@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 from phea import _native
 from phea._request import answered, translated
+from phea._shown import Shown
 from phea._texts import held_files, setting, text_of, texts
 from phea.errors import ProjectWarning
 
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
     Progress: TypeAlias = bool | Callable[[str, float], object]
 
 
-class Project:
+class Project(Shown):
     """Rig, controller and specifications of a project file, with all files that it names.
 
     A project is a value: `set` returns another one. It compares by its files and settings, and
@@ -155,18 +156,6 @@ class Project:
     def __repr__(self) -> str:
         changed = f", settings={list(self.settings)}" if self.settings else ""
         return f"Project({self.path!r}, title={self.title!r}{changed})"
-
-    def _repr_html_(self) -> str:
-        from phea._notebook import html
-
-        return html(self)
-
-    def _repr_mimebundle_(
-        self, include: Any = None, exclude: Any = None
-    ) -> dict[str, str]:
-        from phea._notebook import mimebundle
-
-        return mimebundle(self, include, exclude)
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a project cannot be changed: use set() for another one, not {name} = ...")

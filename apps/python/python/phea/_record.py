@@ -9,6 +9,8 @@ import typing
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from phea._shown import Shown
+
 if TYPE_CHECKING:
     from typing import Self
 
@@ -145,7 +147,7 @@ def _comparable(value: Any) -> Any:
     return value
 
 
-class Answer(Record):
+class Answer(Shown, Record):
     """Answer of a command: its values as attributes, its JSON, its text and its files.
 
     ``bool(answer)`` is the yes or no of the command, which ends with status 1 for a no.
@@ -246,17 +248,6 @@ class Answer(Record):
         self._fields()
         return super().__repr__()
 
-    def _repr_html_(self) -> str:
-        from phea._notebook import html
-
-        return html(self)
-
-    def _repr_mimebundle_(
-        self, include: Any = None, exclude: Any = None
-    ) -> dict[str, str]:
-        from phea._notebook import mimebundle
-
-        return mimebundle(self, include, exclude)
 
 
 Converter = Callable[[Any], Any]

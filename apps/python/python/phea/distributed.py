@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import closing
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from phea import _native
 from phea._extras import imported
 from phea._request import translated
+from phea.errors import Stopped
 
 if TYPE_CHECKING:
     from phea._project import Progress, Project
@@ -70,7 +72,7 @@ class _Engine(Protocol):
 
     def results(
         self, work: Callable[..., Result], arguments: Sequence[tuple[Any, ...]]
-    ) -> Iterator[tuple[int, Result]]:
+    ) -> Generator[tuple[int, Result], None, None]:
         """Results by the places of their arguments, in the order in which they arrive."""
 
 
@@ -86,7 +88,7 @@ class _Dask:
 
     def results(
         self, work: Callable[..., Result], arguments: Sequence[tuple[Any, ...]]
-    ) -> Iterator[tuple[int, Result]]:
+    ) -> Generator[tuple[int, Result], None, None]:
         distributed = imported("distributed", "dask")
         submit = self._client.submit
         futures = {submit(work, *one, pure=False, retries=_RETRIES): i for i, one in enumerate(arguments)}
@@ -114,7 +116,7 @@ class _Ray:
 
     def results(
         self, work: Callable[..., Result], arguments: Sequence[tuple[Any, ...]]
-    ) -> Iterator[tuple[int, Result]]:
+    ) -> Generator[tuple[int, Result], None, None]:
         remote = self._ray.remote(max_retries=_RETRIES)(work)
         places = {remote.remote(*one): i for i, one in enumerate(arguments)}
         waiting = list(places)
@@ -133,7 +135,7 @@ def _engine_of(client: Any) -> _Engine:
         return _Ray(client)
     if all(hasattr(client, name) for name in ("submit", "run", "cancel")):
         return _Dask(client)
-    if isinstance(getattr(client, "results", None), Callable):  # type: ignore[arg-type]
+    if callable(getattr(client, "results", None)):
         engine: _Engine = client
         return engine
     raise TypeError(f"client is a distributed.Client or the module ray, not {client!r}")
@@ -197,11 +199,11 @@ def campaign(
                 raise translated(refused) from None
             chunks = [(first, min(first + chunk, runs)) for first in range(stored, runs, chunk)]
             arguments = [(project, seed, first, end) for first, end in chunks]
-            for done in _in_order(engine.results(_lines, arguments), table.append):
-                if report is not None and report("driving", chunks[done][1] / runs) is False:
-                    from phea.errors import Stopped
-
-                    raise Stopped("campaign was stopped")
+            # whatever ends the loop, what is queued is cancelled at once
+            with closing(engine.results(_lines, arguments)) as results:
+                for done in _in_order(results, table.append):
+                    if report is not None and report("driving", chunks[done][1] / runs) is False:
+                        raise Stopped("campaign was stopped")
     finally:
         table.close()
     return project.campaign(runs=runs, seed=seed, out=out)
@@ -252,5 +254,6 @@ def sweep(
     engine = _engine_of(client)
     _expect_same_phea(engine)
     arguments = [(project, {path: value}, command, options) for value in values]
-    found = dict(engine.results(_answer, arguments))
+    with closing(engine.results(_answer, arguments)) as results:
+        found = dict(results)
     return [found[place] for place in range(len(arguments))]
