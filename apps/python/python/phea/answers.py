@@ -4871,7 +4871,7 @@ class ComparedProjectAnswer(Record):
 
 
 class CampaignAnswer(Answer):
-    """Answer of `campaign`, about all runs or a part of them.
+    """Answer of `campaign` about all runs.
 
     Attributes
     ----------
@@ -4903,7 +4903,7 @@ class CampaignAnswer(Answer):
     runs
         Runs of the campaign, counted from 0.
     complete
-        True if every run of this part has its row.
+        True if every run has its row.
     parameters
         Varied numbers.
     statuses
@@ -4967,11 +4967,11 @@ class CampaignRunsAnswer(Record):
     Attributes
     ----------
     requested
-        Number of runs of the whole campaign.
+        Number of requested runs.
     from_
-        First run of this part.
+        Index of the first run, 0.
     until
-        Run after the last of this part.
+        Index after that of the last run.
     rows
         Number of rows, one of each run that is done.
     """

@@ -14,7 +14,7 @@ use phea_hydraulics::signal::Signal;
 use requirement::{CampaignRequirementAnswer, requirement};
 use spread::{CampaignEventAnswer, CampaignLumpAnswer, events, lumps};
 
-/// Answer of `campaign`, about all runs or a part of them.
+/// Answer of `campaign` about all runs.
 #[derive(Answer)]
 pub(crate) struct CampaignAnswer {
     /// Name of the scenario that is run.
@@ -23,7 +23,7 @@ pub(crate) struct CampaignAnswer {
     seed: u32,
     /// Runs of the campaign, counted from 0.
     runs: CampaignRunsAnswer,
-    /// True if every run of this part has its row.
+    /// True if every run has its row.
     complete: bool,
     /// Varied numbers.
     parameters: Vec<VariedRangeAnswer>,
@@ -75,11 +75,11 @@ pub(crate) struct CampaignRunAnswer {
 /// Runs of a campaign.
 #[derive(Answer)]
 struct CampaignRunsAnswer {
-    /// Number of runs of the whole campaign.
+    /// Number of requested runs.
     requested: u64,
-    /// First run of this part.
+    /// Index of the first run, 0.
     from: u64,
-    /// Run after the last of this part.
+    /// Index after that of the last run.
     until: u64,
     /// Number of rows, one of each run that is done.
     rows: usize,
