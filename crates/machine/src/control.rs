@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use phea_dynamics::controller::{Converter, SampledController};
 use phea_dynamics::simulation::{
     CommandedPlant, Observer, Outcome, Plant, Sensed, SimulationError, SimulationSettings, System, Task,
     drive_one,
 };
 use phea_hydraulics::machine::{InitialCondition, Machine};
+
+use super::deployed::Deployed;
 
 /// Observer of a run.
 pub type Watcher<'a> = Box<dyn Observer + 'a>;
@@ -31,26 +32,18 @@ pub enum Control {
 pub struct Sampled {
     /// Machine with its hold.
     pub held: Commanded,
-    /// Controller with G and F in z.
-    pub controller: SampledController,
+    /// Controller as the computer executes it.
+    pub deployed: Deployed,
     /// Delay from a sample until its command takes effect, s.
     pub delay_s: f64,
     /// Largest magnitude of the command, V.
     pub command_limit: f64,
-    /// Feedforward gain from the load's velocity to the command, V s/m.
-    pub feed_forward: f64,
-    /// Converter of the command, if it is quantised.
-    pub command_converter: Option<Converter>,
-    /// Converter of the measurement, if it is quantised.
-    pub measurement_converter: Option<Converter>,
     /// Root mean square of the measurement noise, N.
     pub noise: f64,
     /// Root mean square of the noise of the velocity that is fed forward, m/s.
     pub velocity_noise: f64,
     /// Root mean square of the noise of the pressure signal that is fed back, Pa.
     pub pressure_noise: f64,
-    /// Resolution of that velocity, m/s; zero without rounding.
-    pub velocity_resolution: f64,
     /// Seed of the random numbers of the noise.
     pub seed: u64,
 }

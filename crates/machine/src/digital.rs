@@ -2,11 +2,12 @@
 
 use std::cell::RefCell;
 
-use phea_dynamics::controller::{ControllerInput, ControllerState};
+use phea_dynamics::controller::ControllerInput;
 use phea_dynamics::random;
 use phea_dynamics::simulation::{FrozenWatch, Plant, Sampler};
 
 use super::control::Sampled;
+use super::deployed::{DeployedState, SampledSignals};
 use super::frozen::{FrozenSample, least_stable};
 use super::samples::{ControllerSample, ControllerSamples};
 
@@ -37,17 +38,16 @@ pub enum Waking {
     Resumed(DigitalMemory),
 }
 
-/// Sampled controller in operation.
+/// Sampled controller in operation: a [`super::Deployed`] that reads these signals.
 ///
 /// ```text
-/// m = AD(y + n)                                    y the sensor output, n white noise, AD rounds and ends at its range
-/// v = q round((v_m + n_v)/q)                       v_m the velocity sensor output, n_v white noise, q its resolution
-/// p = p_m + n_p                                    p_m the pressure signal, n_p white noise
-/// u = DA(limit(G (F r - m) + k v - H p))           k v the feed-forward, H p the pressure feedback, DA rounds
+/// y + n          y the output of the force sensor, n white noise
+/// v_m + n_v      v_m the output of the velocity sensor, n_v white noise
+/// p_m + n_p      p_m the pressure signal, n_p white noise
 /// ```
 pub struct Digital<'a> {
     sampled: &'a Sampled,
-    state: ControllerState,
+    state: DeployedState,
     random: u64,
     /// Command held before the first one takes effect, V.
     held: f64,
@@ -61,18 +61,21 @@ pub struct Digital<'a> {
 impl<'a> Digital<'a> {
     /// Controller with this initial state.
     pub fn new(sampled: &'a Sampled, waking: &Waking, log: &'a RefCell<ControllerSamples>) -> Digital<'a> {
-        let controller = &sampled.controller;
-        let (state, held, random) = match waking {
-            Waking::AtRest => (controller.at_rest(), 0.0, sampled.seed),
+        let deployed = &sampled.deployed;
+        let (state, random) = match waking {
+            Waking::AtRest => (deployed.at_rest(), sampled.seed),
             Waking::Holding { read, command_v } => {
-                (controller.holding_with(read, *command_v), *command_v, sampled.seed)
+                let controller = deployed.controller.holding_with(read, *command_v);
+                (DeployedState { controller, command_v: *command_v }, sampled.seed)
             }
             Waking::Resumed(memory) => {
                 // a state from a file has as many memories as its controller
-                let resumed = controller.resumed(&memory.memories).unwrap_or_else(|| controller.at_rest());
-                (resumed, memory.command_v, memory.random)
+                let resumed = deployed.controller.resumed(&memory.memories);
+                let controller = resumed.unwrap_or_else(|| deployed.controller.at_rest());
+                (DeployedState { controller, command_v: memory.command_v }, memory.random)
             }
         };
+        let held = state.command_v;
         Digital { sampled, state, random, held, watch: FrozenWatch::default(), log, memory: None }
     }
 
@@ -83,24 +86,32 @@ impl<'a> Digital<'a> {
 }
 
 impl Digital<'_> {
-    /// Velocity of the load for the feedforward, m/s.
-    fn velocity(&mut self, state: &[f64], inputs: &[f64]) -> f64 {
-        let Sampled { held, velocity_noise, velocity_resolution, .. } = self.sampled;
-        let states: usize = Plant::<f64>::states(held.plant());
-        let mut velocity = held.plant().disturbance(&state[..states], &inputs[2..]);
-        if *velocity_noise > 0.0 {
-            velocity += velocity_noise * random::normal(&mut self.random);
+    /// Value with white noise of this root mean square.
+    fn noisy(&mut self, value: f64, noise: f64) -> f64 {
+        if noise > 0.0 { value + noise * random::normal(&mut self.random) } else { value }
+    }
+
+    /// Signals of a sample, with their noise.
+    fn reading(&mut self, state: &[f64], inputs: &[f64]) -> SampledSignals {
+        let Sampled { held, deployed, .. } = self.sampled;
+        let [reference, measurement, pressure] = held.sampled(state, inputs);
+        let measurement = self.noisy(measurement, self.sampled.noise);
+        let mut read = SampledSignals { reference, measurement, velocity: 0.0, pressure };
+        if deployed.feed_forward != 0.0 {
+            let states: usize = Plant::<f64>::states(held.plant());
+            let velocity = held.plant().disturbance(&state[..states], &inputs[2..]);
+            read.velocity = self.noisy(velocity, self.sampled.velocity_noise);
         }
-        match *velocity_resolution > 0.0 {
-            true => velocity_resolution * (velocity / velocity_resolution).round(),
-            false => velocity,
+        if deployed.controller.reads_inner() {
+            read.pressure = self.noisy(pressure, self.sampled.pressure_noise);
         }
+        read
     }
 }
 
 impl Sampler for Digital<'_> {
     fn sample_time_s(&self) -> f64 {
-        self.sampled.controller.sample_time_s()
+        self.sampled.deployed.controller.sample_time_s()
     }
 
     fn delay_s(&self) -> f64 {
@@ -112,45 +123,30 @@ impl Sampler for Digital<'_> {
     }
 
     fn command(&mut self, time_s: f64, state: &[f64], inputs: &[f64]) -> f64 {
-        let Sampled { held, controller, noise, pressure_noise, feed_forward, .. } = self.sampled;
-        let [reference, mut measurement, mut inner] = held.sampled(state, inputs);
-        if *noise > 0.0 {
-            measurement += noise * random::normal(&mut self.random);
-        }
-        if let Some(converter) = self.sampled.measurement_converter {
-            measurement = converter.rounded(measurement);
-        }
-        let looked = self.watch.passes(1, time_s);
-        let before = looked.then(|| self.state.clone());
-        let mut added = 0.0;
-        if *feed_forward != 0.0 {
-            added = feed_forward * self.velocity(state, inputs);
-        }
-        if controller.reads_inner() && *pressure_noise > 0.0 {
-            inner += pressure_noise * random::normal(&mut self.random);
-        }
-        let read = ControllerInput { reference, measurement, inner, added };
-        let output = controller.step_with(&mut self.state, &read);
+        let read = self.reading(state, inputs);
+        let watched = self.watch.passes(1, time_s);
+        let before = watched.then(|| self.state.controller.clone());
+        let executed = self.sampled.deployed.step(&mut self.state, &read);
         if let Some(memory) = before {
-            let sample = FrozenSample { state, inputs, memory, read: [reference, measurement, inner] };
+            let read = [read.reference, executed.measurement, read.pressure];
+            let sample = FrozenSample { state, inputs, memory, read };
             self.watch.take(time_s, least_stable(self.sampled, &sample));
             self.log.borrow_mut().amplification = self.watch.amplification();
         }
-        let converter = self.sampled.command_converter;
-        let command_v = converter.map_or(output.command, |converter| converter.rounded(output.command));
         self.log.borrow_mut().take(ControllerSample {
             time_s,
-            filtered_reference_n: output.filtered_reference,
-            command_v,
-            unlimited_v: output.wanted,
-            integral_v: output.integral,
-            measurement_n: measurement,
-            limited: output.limited,
+            filtered_reference_n: executed.output.filtered_reference,
+            command_v: executed.command_v,
+            unlimited_v: executed.output.wanted,
+            integral_v: executed.output.integral,
+            measurement_n: executed.measurement,
+            limited: executed.output.limited,
         });
         if let Some(memory) = self.memory {
-            let memories = self.state.memories();
+            let memories = self.state.controller.memories();
+            let command_v = executed.command_v;
             *memory.borrow_mut() = DigitalMemory { command_v, memories, random: self.random };
         }
-        command_v
+        executed.command_v
     }
 }

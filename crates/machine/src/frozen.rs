@@ -4,6 +4,7 @@ use phea_dynamics::controller::ControllerState;
 use phea_dynamics::simulation::{Frozen, FrozenMode, Plant, SampledLaw};
 
 use super::control::Sampled;
+use super::deployed::Deployed;
 
 /// Sample at which the loop is linearised.
 pub(crate) struct FrozenSample<'a> {
@@ -19,7 +20,7 @@ pub(crate) struct FrozenSample<'a> {
 
 /// Least stable mode of the loop.
 pub(crate) fn least_stable(sampled: &Sampled, sample: &FrozenSample<'_>) -> Option<FrozenMode> {
-    let Sampled { held, controller, feed_forward, delay_s, .. } = sampled;
+    let Sampled { held, deployed: Deployed { controller, feed_forward, .. }, delay_s, .. } = sampled;
     let FrozenSample { state, inputs, memory, read } = sample;
     let frozen = Frozen::at(held, state, inputs);
     let rows = [0, 1, 2].map(|place| {

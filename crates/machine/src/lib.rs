@@ -12,6 +12,7 @@
 //! only machine, so that each is compiled once, and optimised in test builds too.
 
 mod control;
+mod deployed;
 mod digital;
 mod frozen;
 mod lanes;
@@ -20,6 +21,7 @@ mod samples;
 mod shaken;
 
 pub use control::{Commanded, Control, Sampled, Watcher};
+pub use deployed::{Deployed, DeployedState, Executed, SampledSignals};
 pub use digital::{Digital, DigitalMemory, Waking};
 pub use lanes::{FedMotion, Fleet, Lanewise, one_by_one};
 pub use rest::{HeldInputs, Rest, at_rest};

@@ -105,7 +105,7 @@ pub fn at_rest(
             Rest { measured_n, inner_pa, command_v: signals.wanted, limit_v, start }
         }
         Control::Sampled(sampled) => {
-            let controller = &sampled.controller;
+            let controller = &sampled.deployed.controller;
             let (gains, inner_gain) = (controller.steady_gains(), controller.steady_inner_gain());
             let resting = RestingMachine { held: &sampled.held, gains, inner_gain };
             let mut guess = guess.to_vec();

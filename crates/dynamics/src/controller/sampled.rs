@@ -107,6 +107,32 @@ impl SampledController {
         self.sample_time_s
     }
 
+    /// Sections of the feedback compensator G, in the order in which they run.
+    pub fn feedback_sections(&self) -> &[Section] {
+        &self.feedback
+    }
+
+    /// Sections of the prefilter F, in the order in which they run; those of a gain of one if it
+    /// acts before the sampler.
+    pub fn prefilter_sections(&self) -> &[Section] {
+        &self.prefilter
+    }
+
+    /// Sections of H, which feeds an inner signal back; empty without such a signal.
+    pub fn inner_sections(&self) -> &[Section] {
+        self.inner()
+    }
+
+    /// Largest magnitude of the command; infinite without a limit.
+    pub fn command_limit(&self) -> f64 {
+        self.command_limit
+    }
+
+    /// What the states do while the command is limited.
+    pub fn anti_windup(&self) -> AntiWindup {
+        self.anti_windup
+    }
+
     /// Controller without a limit of its command.
     pub(crate) fn unlimited(&self) -> SampledController {
         SampledController { command_limit: f64::INFINITY, ..self.clone() }

@@ -280,8 +280,8 @@ impl Plan {
         let values = self.ranges.iter().map(|range| range.draw(&mut stream)).collect();
         let noisy = match &self.bench.control {
             Control::Sampled(sampled) => {
-                let velocity = sampled.velocity_noise > 0.0 && sampled.feed_forward != 0.0;
-                let pressure = sampled.pressure_noise > 0.0 && sampled.controller.reads_inner();
+                let velocity = sampled.velocity_noise > 0.0 && sampled.deployed.feed_forward != 0.0;
+                let pressure = sampled.pressure_noise > 0.0 && sampled.deployed.controller.reads_inner();
                 sampled.noise > 0.0 || velocity || pressure
             }
             Control::Continuous(_) | Control::Open(_) => false,

@@ -6,7 +6,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{CommandedPlant, Sensed, SimulationSettings};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::machine::{Machine, MachineError, MachineOptions, PowerUnit};
-use phea_machine::{Control, Sampled};
+use phea_machine::{Control, Deployed, Sampled};
 
 use super::SimulateError;
 use super::line_limits::LineLimits;
@@ -212,13 +212,15 @@ fn sampled(
         held: CommandedPlant::on_hold(sensed, &between)?,
         delay_s: controller.timing.delay_s,
         command_limit: controller.command_limit.unwrap_or(f64::INFINITY),
-        controller: controller.sampled(sample_time_s)?,
-        feed_forward,
-        command_converter: setup.quantization.command,
-        measurement_converter: setup.quantization.measurement,
+        deployed: Deployed {
+            controller: controller.sampled(sample_time_s)?,
+            feed_forward,
+            velocity_resolution: of_velocity.map_or(0.0, |sensor| sensor.resolution),
+            measurement_converter: setup.quantization.measurement,
+            command_converter: setup.quantization.command,
+        },
         noise,
         velocity_noise: of_velocity.map_or(0.0, |sensor| sensor.noise),
-        velocity_resolution: of_velocity.map_or(0.0, |sensor| sensor.resolution),
         pressure_noise: of_pressures.map_or(0.0, |declared| declared.noise),
         seed: u64::from(project.simulation.seed),
     })

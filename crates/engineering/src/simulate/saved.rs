@@ -117,7 +117,7 @@ pub(super) fn of_end(
         return Err(NotSaved::InTransit);
     }
     if let (Control::Sampled(sampled), Some(_)) = (&bench.control, memory) {
-        let sample_time_s = sampled.controller.sample_time_s();
+        let sample_time_s = sampled.deployed.controller.sample_time_s();
         let samples = end_s / sample_time_s;
         if (samples - samples.round()).abs() > AT_A_SAMPLE {
             return Err(NotSaved::BetweenSamples);
@@ -245,7 +245,7 @@ fn taken(root: &TreeNode, bench: &ControlledMachine, findings: &mut Findings) ->
         _ => None,
     };
     let memories = match &bench.control {
-        Control::Sampled(sampled) => Some(sampled.controller.at_rest().memories().len()),
+        Control::Sampled(sampled) => Some(sampled.deployed.controller.at_rest().memories().len()),
         Control::Continuous(_) | Control::Open(_) => None,
     };
     if memories.is_some() && random.is_none() {

@@ -10,7 +10,7 @@ use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 use phea_dynamics::simulation::{CommandedPlant, Input, Plant, Profile, Sensed, SimulationSettings};
 use phea_hydraulics::machine::Machine;
-use phea_machine::{Control, ControllerSamples, Digital, Sampled, Waking};
+use phea_machine::{Control, ControllerSamples, Deployed, Digital, Sampled, Waking};
 use phea_qft::closed_loop::{Compensation, Member};
 
 use super::open_loop::profile;
@@ -181,8 +181,8 @@ impl LoopParts<'_> {
         let quiet = Sampled {
             noise: 0.0,
             velocity_noise: 0.0,
-            velocity_resolution: 0.0,
             pressure_noise: 0.0,
+            deployed: Deployed { velocity_resolution: 0.0, ..sampled.deployed.clone() },
             ..sampled.clone()
         };
         let (held, rest) = (&quiet.held, &self.rested.rest);
@@ -197,7 +197,7 @@ impl LoopParts<'_> {
             &state,
             &[&[rest.command, self.reference_n], &rest.inputs[..], &waves].concat(),
         );
-        let sample_time_s = quiet.controller.sample_time_s();
+        let sample_time_s = quiet.deployed.controller.sample_time_s();
         let mut sampled: Vec<f64> = frequencies.iter().filter_map(|one| whole(*one, sample_time_s)).collect();
         sampled.dedup();
         let mut points = Vec::new();
