@@ -16,7 +16,7 @@ import phea
 
 def least_stiffness(project: phea.Project) -> float:
     """Least hydraulic stiffness over the stroke, N/m."""
-    found = next(one for one in project.check().derived if one.name == "stiffness.minimum")
+    found = project.check().derived["stiffness.minimum"]
     assert found.value is not None and found.unit == "N/m"
     return found.value
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
+PACKAGE = Path(__file__).parents[1]
 
 
 @pytest.fixture(scope="session")
@@ -27,12 +28,16 @@ class Command:
         self._path = path
         self._folder = folder
 
-    def json(self, *words: str) -> str:
-        """The JSON object that the command prints, without its line end."""
+    def answer(self, *words: str) -> tuple[str, int]:
+        """The JSON object that the command prints, without its line end, and its exit status."""
         run = subprocess.run(
             [self._path, *words, "--json"], cwd=EXAMPLES, capture_output=True, check=False
         )
-        return run.stdout.decode().removesuffix("\n")
+        return run.stdout.decode().removesuffix("\n"), run.returncode
+
+    def json(self, *words: str) -> str:
+        """The JSON object that the command prints, without its line end."""
+        return self.answer(*words)[0]
 
     def status(self, *words: str) -> int:
         """The exit status of the command."""

@@ -82,6 +82,25 @@ def test_a_worker_with_another_phea_is_refused_by_name(project: phea.Project, tm
     assert caught.value.workers == {"here": "0.0.1 (0123456789abcdef)"}
 
 
+def test_a_worker_that_joins_later_is_refused_too(
+    project: phea.Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Grows(Engine):
+        def results(
+            self, work: Callable[..., Any], arguments: Sequence[tuple[Any, ...]]
+        ) -> Generator[tuple[int, Any], None, None]:
+            yield 0, work(*arguments[0])
+            monkeypatch.setattr(distributed, "identity", lambda: "0.0.1 (0123456789abcdef)")
+            yield 1, work(*arguments[1])
+
+    table = tmp_path / "runs.csv"
+    with pytest.raises(distributed.WorkerMismatch, match=r"has 0\.0\.1"):
+        distributed.campaign(project, runs=60, out=table, client=Grows(), chunk=10)
+    assert table.read_bytes().count(b"\n") == 11
+    with pytest.raises(ValueError, match="did you mean 'verify'"):
+        distributed.sweep(project, "line.length", ["1 m"], "verfy", Engine())
+
+
 def test_false_stops_and_keeps_the_rows(project: phea.Project, tmp_path: Path) -> None:
     table = tmp_path / "runs.csv"
     engine = Engine()

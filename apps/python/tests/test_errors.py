@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import pickle
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 import phea
+import phea.distributed
+from conftest import Command
+
+pytestmark = pytest.mark.filterwarnings("ignore::phea.ProjectWarning")
 
 
 def test_every_error_at_once() -> None:
@@ -35,6 +41,8 @@ def test_a_missing_file(tmp_path: Path) -> None:
         phea.read(tmp_path / "absent.toml")
     with pytest.raises(IsADirectoryError):
         phea.read(tmp_path)
+    with pytest.raises(FileNotFoundError):
+        phea.identify([tmp_path / "absent.csv"])
 
 
 def test_a_project_that_lacks_what_is_asked() -> None:
@@ -47,9 +55,76 @@ def test_a_project_that_lacks_what_is_asked() -> None:
     assert not isinstance(wrong.value, phea.NoAnswer)
 
 
-def test_numbers_out_of_range_are_value_errors() -> None:
-    with pytest.raises(ValueError, match="at least 1, not -1"):
-        phea.example("benchmark/campaign").campaign(runs=-1)
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda rig: rig.campaign(runs=-1), "runs is at least 1, not -1"),
+        (lambda rig: rig.campaign(runs=2**64), "runs is at most 18446744073709551615"),
+        (lambda rig: rig.campaign(runs=1, seed=-1), "seed is at least 0, not -1"),
+        (lambda rig: rig.campaign(runs=1, threads=0), "threads is at least 1, not 0"),
+        (lambda rig: rig.campaign_run(-1), "run is at least 0, not -1"),
+        (lambda rig: rig.design(seed=2**32), "seed is at most 4294967295, not 4294967296"),
+        (lambda rig: rig.linearize(sweep="line.length=1 m..2 m", points=-3), "points is at least"),
+        (lambda rig: phea.identify([], bootstrap=3), "bootstrap is at least 50, not 3"),
+    ],
+)
+def test_numbers_out_of_range_are_value_errors(
+    call: Callable[[phea.Project], object], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        call(phea.example("benchmark/campaign"))
+
+
+@pytest.mark.usefixtures("in_examples")
+@pytest.mark.parametrize(
+    ("words", "call", "beginning"),
+    [
+        (
+            ["size", "ybitu/hose.toml", "--gain", "3 m"],
+            lambda rig: rig.size(gain="3 m"),
+            "gain 3 m: expected a gain in V/N",
+        ),
+        (
+            ["linearize", "ybitu/hose.toml", "--sweep", "line.length"],
+            lambda rig: rig.linearize(sweep="line.length"),
+            "sweep line.length: a sweep has the form",
+        ),
+        (
+            ["check", "ybitu/hose.toml", "--set", "line.lenght=2 m"],
+            lambda rig: rig.set({"line.lenght": "2 m"}),
+            "error: unknown key `lenght` in [line]\n --> set({'line.lenght': '2 m'}):1:6\n",
+        ),
+        (
+            ["shape", "ybitu/hose.toml", "--remove", "9"],
+            lambda rig: rig.shaping().remove(9),
+            "error: there is no element `9`\n --> remove 9:1:1\n",
+        ),
+    ],
+    ids=lambda value: value[0] if isinstance(value, list) else "",
+)
+def test_messages_name_the_arguments_of_python(
+    run: Command, words: list[str], call: Callable[[phea.Project], object], beginning: str
+) -> None:
+    rig = phea.read("ybitu/hose.toml")
+    with pytest.raises(phea.ProjectError) as caught:
+        call(rig)
+    # the JSON is the command's, with its options
+    assert caught.value.json_text == run.json(*words) and "--" in caught.value.json_text
+    assert str(caught.value).startswith(beginning)
+    texts = [f"{one.file} {one.message} {one.help}" for one in caught.value.diagnostics]
+    assert texts and not any("--" in text for text in texts)
+    assert not any(line.lstrip().startswith(("--s", "--> --")) for line in str(caught.value).split("\n"))
+
+
+def test_exceptions_pickle() -> None:
+    with pytest.raises(phea.ProjectError) as caught:
+        phea.loads("")
+    stopped = phea.Stopped("design was stopped", phea.example("qft/servo").check())
+    mismatch = phea.distributed.WorkerMismatch("1", {"a": "2"})
+    for error in (caught.value, stopped, mismatch):
+        again = pickle.loads(pickle.dumps(error))
+        assert type(again) is type(error) and str(again) == str(error)
+        assert vars(again) == vars(error)
 
 
 @pytest.mark.parametrize(
@@ -59,6 +134,12 @@ def test_numbers_out_of_range_are_value_errors() -> None:
         lambda rig: rig.set({3: "2 m"}),
         lambda rig: rig.set({"line.length": object()}),
         lambda rig: rig.size(gain=1.0, length=2.0),
+        lambda rig: rig.linearize(points=3),
+        lambda rig: rig.alternatives(front="disturbance_peak_n,swept"),
+        lambda rig: rig.simulate(amplitude="0.1 V"),
+        lambda rig: rig.simulate(frequency_response=True, check=True),
+        lambda rig: rig.campaign(runs=2.5),
+        lambda rig: phea.identify([], period=1, segment=2),
         lambda rig: rig.verify(progress=3),
         lambda rig: rig.verify(proof=True),
         lambda rig: rig.design(seed="one"),

@@ -1,9 +1,11 @@
-"""Every answer has the bytes that the command prints and writes."""
+"""Every answer has the bytes that the command prints and writes, whatever the number of threads."""
 
 from __future__ import annotations
 
+import os
 import threading
 from collections.abc import Callable
+from typing import TypeVar
 
 import pytest
 
@@ -11,9 +13,12 @@ import phea
 from conftest import Command
 from phea import Answer
 
+pytestmark = pytest.mark.filterwarnings("ignore::phea.ProjectWarning")
+
 PROJECTS = [f"{name}.toml" for name in phea.examples()]
 
 Request = Callable[[phea.Project], Answer]
+Found = TypeVar("Found")
 
 # Requests that are quick on every example, with the words of the command.
 REQUESTS: dict[str, Request] = {
@@ -21,7 +26,51 @@ REQUESTS: dict[str, Request] = {
     "size": lambda project: project.size(),
     "linearize": lambda project: project.linearize(),
     "bench": lambda project: project.bench(),
+    "simulate": lambda project: project.simulate(figures=False),
 }
+
+# Examples whose audit or design takes seconds, or minutes.
+SLOW_AUDITS = {
+    *("leg/knee", "structural/rig", "ybitu/identified", "ybitu/series", "ybitu/telescopic"),
+    *("ybitu/transmission", "ybitu/accumulator", "ybitu/alternatives"),
+}
+QUICK_DESIGNS = [
+    *("qft/by_hand", "qft/damped_resonance", "qft/dead_time", "qft/design/edge_plants"),
+    *("qft/design/servo_least_gain", "qft/design/servo_prefilter", "qft/design/wheel"),
+    *("qft/edge_plants", "qft/measured", "qft/servo", "qft/servo_shaped", "qft/unstable_plant"),
+    "rotary/vane",
+]
+
+# Requests that compute on all cores: words of the command, request, and examples.
+THREADED: dict[str, tuple[list[str], Request, list[str]]] = {
+    "verify": (
+        ["verify"],
+        lambda project: project.verify(),
+        [name for name in phea.examples() if name not in SLOW_AUDITS],
+    ),
+    "prove": (
+        ["verify", "--prove"],
+        lambda project: project.verify(prove=True),
+        ["qft/servo", "qft/unstable_plant", "qft/damped_resonance"],
+    ),
+    "on the machine": (
+        ["verify", "--on-machine"],
+        lambda project: project.verify(on_machine=True),
+        ["rotary/vane"],
+    ),
+    "design": (["design"], lambda project: project.design(), QUICK_DESIGNS),
+    "campaign": (
+        ["campaign", "--runs", "7"],
+        lambda project: project.campaign(runs=7, files=False),
+        ["benchmark/campaign", "rotary/vane"],
+    ),
+    "report": (
+        ["report"],
+        lambda project: project.report(),
+        ["qft/unstable_plant", "benchmark/closed_loop", "benchmark/campaign"],
+    ),
+}
+CASES = [(name, example) for name, (_, _, examples) in THREADED.items() for example in examples]
 
 
 def answer_or_refusal(project: str, request: Request) -> tuple[str, bool, dict[str, bytes]]:
@@ -33,16 +82,49 @@ def answer_or_refusal(project: str, request: Request) -> tuple[str, bool, dict[s
     return answer.json_text, bool(answer), answer.files
 
 
-@pytest.mark.filterwarnings("ignore::phea.ProjectWarning")
+def json_of(project: str, request: Request) -> str:
+    """JSON of an answer or of a refusal."""
+    try:
+        return request(phea.read(project)).json_text
+    except phea.ProjectError as error:
+        return error.json_text
+
+
+def side_by_side(*works: Callable[[], Found], cores: set[int] | None = None) -> list[Found]:
+    """Results of works in threads of their own, at once; on these cores only."""
+    found: dict[int, Found] = {}
+
+    def work(index: int) -> None:
+        if cores is not None:
+            os.sched_setaffinity(0, cores)  # of this thread, and of those that it starts
+        found[index] = works[index]()
+
+    threads = [threading.Thread(target=work, args=(index,)) for index in range(len(works))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return [found[index] for index in range(len(works))]
+
+
 @pytest.mark.usefixtures("in_examples")
 @pytest.mark.parametrize("name", REQUESTS)
 @pytest.mark.parametrize("project", PROJECTS)
 def test_json_of_every_example(run: Command, project: str, name: str) -> None:
-    json, _, _ = answer_or_refusal(project, REQUESTS[name])
-    assert json == run.json(name, project)
+    assert json_of(project, REQUESTS[name]) == run.json(name, project)
 
 
-@pytest.mark.filterwarnings("ignore::phea.ProjectWarning")
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="needs the threads of Linux")
+@pytest.mark.usefixtures("in_examples")
+@pytest.mark.parametrize(("name", "example"), CASES)
+def test_one_core_and_all_cores(run: Command, name: str, example: str) -> None:
+    words, request, _ = THREADED[name]
+    project = f"{example}.toml"
+    core = {min(os.sched_getaffinity(0))}
+    (on_one,) = side_by_side(lambda: json_of(project, request), cores=core)
+    assert on_one == json_of(project, request) == run.json(words[0], project, *words[1:])
+
+
 @pytest.mark.usefixtures("in_examples")
 @pytest.mark.parametrize(
     ("words", "request_"),
@@ -55,6 +137,7 @@ def test_json_of_every_example(run: Command, project: str, name: str) -> None:
         (["simulate", "ybitu/hose.toml"], lambda project: project.simulate()),
         (["design", "qft/unstable_plant.toml"], lambda project: project.design(files=True)),
         (["bench", "ybitu/hose.toml"], lambda project: project.bench()),
+        (["report", "qft/unstable_plant.toml"], lambda project: project.report(files=True)),
         (
             ["campaign", "benchmark/campaign.toml", "--runs", "12"],
             lambda project: project.campaign(runs=12),
@@ -71,23 +154,33 @@ def test_json_status_and_files(run: Command, words: list[str], request_: Request
     assert files == written
 
 
-@pytest.mark.filterwarnings("ignore::phea.ProjectWarning")
 @pytest.mark.usefixtures("in_examples")
-def test_two_threads_at_once_do_not_disturb_each_other() -> None:
-    projects = [phea.read("ybitu/hose.toml"), phea.read("ybitu/pipe.toml")]
-    alone = [project.simulate(figures=False) for project in projects]
-    found: dict[int, Answer] = {}
-
-    def simulate(index: int) -> None:
-        found[index] = projects[index].simulate(figures=False)
-
-    threads = [threading.Thread(target=simulate, args=(index,)) for index in (0, 1)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert [found[0], found[1]] == alone
-    assert found[0].files == alone[0].files
+@pytest.mark.parametrize(
+    ("request_", "projects"),
+    [
+        (
+            lambda project: project.simulate(figures=False),
+            ["ybitu/hose.toml", "ybitu/pipe.toml"],
+        ),
+        (lambda project: project.verify(), ["ybitu/hose.toml", "ybitu/pipe.toml"]),
+        (lambda project: project.design(), ["qft/servo.toml", "qft/dead_time.toml"]),
+        (
+            lambda project: project.campaign(runs=30, seed=3, files=False),
+            ["benchmark/campaign.toml", "rotary/vane.toml"],
+        ),
+    ],
+    ids=["simulate", "verify", "design", "campaign"],
+)
+def test_two_threads_at_once_do_not_disturb_each_other(
+    request_: Request, projects: list[str]
+) -> None:
+    first, second = (phea.read(path) for path in projects)
+    alone = [request_(first), request_(second)]
+    assert alone[0] != alone[1]
+    # two projects at once, and the same one twice
+    together = side_by_side(lambda: request_(first), lambda: request_(second), lambda: request_(first))
+    assert together == [*alone, alone[0]]
+    assert [one.files for one in together] == [one.files for one in (*alone, alone[0])]
 
 
 @pytest.mark.usefixtures("in_examples")

@@ -13,7 +13,8 @@ import pytest
 
 import phea
 from phea import answers
-from phea._record import Answer, Record, _generated
+from phea._fields import generated
+from phea._record import Answer, Record
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +42,7 @@ def walk(value: Any, found: Any, path: str) -> int:
     """Compares JSON with attributes; returns the number of compared leaves."""
     if isinstance(value, dict) and isinstance(found, Record):
         value = {key.replace(".", "_"): part for key, part in value.items()}
-        own = {name.rstrip("_"): name for name in _generated(type(found)).__annotations__ if name[0] != "_"}
+        own = {name.rstrip("_"): name for name in generated(type(found)).__annotations__ if name[0] != "_"}
         assert set(value) <= set(own), path
         missing = {name for key, name in own.items() if key not in value}
         assert all(getattr(found, name) is None for name in missing), path
@@ -103,6 +104,33 @@ def test_answers_are_values(rig: phea.Project) -> None:
     with pytest.raises(AttributeError, match="did you mean 'verdict'"):
         getattr(audit, "verdit")  # noqa: B009
     assert json.loads(audit.json_text) == audit.json
+
+
+def test_derived_quantities_by_name(rig: phea.Project) -> None:
+    derived = rig.check().derived
+    area, rod, piston = (derived[name] for name in ("cylinder.area_a", "line.volume", "line.compliance"))
+    assert area.unit == "m2" and area.value == pytest.approx(math.pi / 4 * (0.05**2 - 0.022**2))
+    assert rod == next(one for one in derived if one.name == "line.volume")
+    assert "line.volume" in derived and "line.volumes" not in derived and piston in derived
+    assert derived.names[:2] == tuple(one.name for one in derived[:2])
+    assert derived == rig.check().derived and pickle.loads(pickle.dumps(derived)) == derived
+    with pytest.raises(KeyError, match="did you mean 'line.volume'"):
+        derived["line.volumes"]
+
+
+@pytest.mark.filterwarnings("ignore::phea.ProjectWarning")
+def test_a_line_shows_the_result(rig: phea.Project) -> None:
+    runs = rig.simulate(figures=False)
+    assert "('step and load motion': 'completed', 'force steps': 'completed')" in repr(runs)
+    run = runs["force steps"]
+    assert "'completed'" in repr(run) and f"{len(run.time_s)} rows" in repr(run)
+    event = run.events[0]
+    assert event.metrics.overshoot_percent is not None
+    assert f"metrics.overshoot_percent={event.metrics.overshoot_percent:.6g}" in repr(event)
+    assert "reference_n=(0, 1000)" in repr(event) and "_reason" not in repr(event)
+    margin = rig.verify().specifications[0]
+    assert isinstance(margin, answers.SpecificationAnswer)
+    assert f"worst_margin_db={margin.worst_margin_db:.6g}" in repr(margin)
 
 
 @pytest.mark.filterwarnings("ignore::phea.ProjectWarning")

@@ -19,8 +19,7 @@ from phea.errors import Interrupted, NoAnswer, ProjectError, ProjectWarning, Sto
 TYPE_CHECKING = False
 
 if TYPE_CHECKING:
-    from typing import Any
-
+    from phea import answers, control, distributed, results, shaping, table
     from phea._examples import example, examples
     from phea._record import Answer, Interval, Record
     from phea._several import check_certificate, compare, identify
@@ -115,14 +114,16 @@ _LATER = {
 }
 
 
-def __getattr__(name: str) -> Any:
-    if name not in _LATER:
-        raise AttributeError(f"module 'phea' has no attribute {name!r}")
-    import importlib
+if not TYPE_CHECKING:  # a type checker knows the names from above, and finds misspelt ones
 
-    module = _LATER[name]
-    found = importlib.import_module(f"phea.{module or name}")
-    return getattr(found, name) if module else found
+    def __getattr__(name: str) -> object:
+        if name not in _LATER:
+            raise AttributeError(f"module 'phea' has no attribute {name!r}")
+        import importlib
+
+        module = _LATER[name]
+        found = importlib.import_module(f"phea.{module or name}")
+        return getattr(found, name) if module else found
 
 
 def __dir__() -> list[str]:

@@ -1,48 +1,33 @@
-"""A project, and one method for each command."""
+"""A project with its files: a value that is read, changed and compared."""
 
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Mapping
 from types import MappingProxyType
 
 from phea import _native
-from phea._request import answered, translated
+from phea._commands import Commands
+from phea._request import translated
 from phea._shown import Shown
-from phea._texts import held_files, setting, text_of, texts
-from phea.errors import ProjectWarning
+from phea._texts import held_files, setting, texts
+from phea._warnings import warn_of
 
 # `typing` takes longer to import than the package.
 TYPE_CHECKING = False
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from typing import Any, Literal, TypeAlias, TypeVar
+    from collections.abc import Sequence
+    from typing import Any
 
+    from phea._commands import Progress as Progress
     from phea._native import Project as NativeProject
-    from phea._record import Answer
     from phea._texts import PathLike, Value
-    from phea.answers import (
-        AlternativesAnswer,
-        BenchAnswer,
-        CampaignRunAnswer,
-        CheckAnswer,
-        LinearizeAnswer,
-        ReportAnswer,
-        SizeAnswer,
-        VerifyAnswer,
-    )
-
     from phea.linear import Family, Linear
-    from phea.results import Campaign, Design, Simulation
     from phea.shaping import Shaping
 
-    AnyAnswer = TypeVar("AnyAnswer", bound=Answer)
-    Progress: TypeAlias = bool | Callable[[str, float], object]
 
-
-class Project(Shown):
+class Project(Commands, Shown):
     """Rig, controller and specifications of a project file, with all files that it names.
 
     A project is a value: `set` returns another one. It compares by its files and settings, and
@@ -120,8 +105,7 @@ class Project(Shown):
             raise TypeError(f"values is a mapping from paths of keys to values, not {values!r}")
         more = [setting(path, value) for path, value in values.items()]
         found = _held(self.path, self.files, [*self.settings, *more], list(self.catalogues))
-        if found._native.warnings not in ("", self._native.warnings):
-            warnings.warn(found._native.warnings, ProjectWarning, stacklevel=2)
+        warn_of(found._native, self._native)
         return found
 
     def with_laws_of(self, text: str | bytes) -> Project:
@@ -131,7 +115,29 @@ class Project(Shown):
         """
         kept = [one for one in self.settings if not one.startswith(("controller", "prefilter"))]
         files = held_files(self.path, text, {**self.files, self.path: text})
-        return _held(self.path, files, kept, list(self.catalogues))
+        found = _held(self.path, files, kept, list(self.catalogues))
+        warn_of(found._native, self._native)
+        return found
+
+    @property
+    def linear(self) -> Linear:
+        """Transfer functions of the project, as arrays of zeros and poles."""
+        from phea.linear import Linear
+
+        return Linear(self)
+
+    @property
+    def family(self) -> Family:
+        """Family of plants: parameters, members, responses."""
+        from phea.linear import Family
+
+        return Family(self)
+
+    def shaping(self, *, prefilter: bool = False) -> Shaping:
+        """Shapes the controller, or the prefilter, by hand: `phea shape`."""
+        from phea.shaping import Shaping
+
+        return Shaping(self, prefilter)
 
     def _state(self) -> tuple[Any, ...]:
         return (self.path, tuple(sorted(self.files.items())), self.settings, self.catalogues)
@@ -159,232 +165,6 @@ class Project(Shown):
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a project cannot be changed: use set() for another one, not {name} = ...")
-
-    @property
-    def linear(self) -> Linear:
-        """Transfer functions of the project, as arrays of zeros and poles."""
-        from phea.linear import Linear
-
-        return Linear(self)
-
-    @property
-    def family(self) -> Family:
-        """Family of plants: parameters, members, responses."""
-        from phea.linear import Family
-
-        return Family(self)
-
-    def check(self) -> CheckAnswer:
-        """Validates the project and derives every quantity: `phea check`."""
-        from phea.answers import CheckAnswer
-
-        return self._ask(CheckAnswer, "check", {}, False)
-
-    def size(
-        self, *, gain: str | float | None = None, length: str | float | None = None
-    ) -> SizeAnswer:
-        """Sizes the hose over the catalogue: `phea size`.
-
-        Parameters
-        ----------
-        gain
-            Proportional gain for which every hose is sized, V/N where no unit is given.
-        length
-            Length of each line for which the gain is found, m where no unit is given.
-        """
-        from phea.answers import SizeAnswer
-
-        if gain is not None and length is not None:
-            raise TypeError("size() takes a gain or a length, not both")
-        return self._ask(SizeAnswer, "size", {"gain": text_of(gain), "length": text_of(length)}, False)
-
-    def linearize(self, *, sweep: str | None = None, points: int | None = None) -> LinearizeAnswer:
-        """Linear models, driving-point impedance and passivity: `phea linearize`.
-
-        Parameters
-        ----------
-        sweep
-            Number of the project that is varied, such as ``"line.length=0.5 m..3 m"``.
-        points
-            Number of values of the sweep, both ends included.
-        """
-        from phea.answers import LinearizeAnswer
-
-        return self._ask(LinearizeAnswer, "linearize", {"sweep": sweep, "points": points}, False)
-
-    def verify(
-        self, *, prove: bool = False, on_machine: bool = False, progress: Progress = False
-    ) -> VerifyAnswer:
-        """Audits the controller for every plant and every frequency: `phea verify`.
-
-        Parameters
-        ----------
-        prove
-            Prove or refute the verdict by interval arithmetic; the certificate is among the files.
-        on_machine
-            Test the verdict in nonlinear simulation.
-        progress
-            ``True`` for a bar, or a callable that takes stage and fraction.
-
-        Examples
-        --------
-        >>> import phea
-        >>> audit = phea.example("ybitu/hose").verify()
-        >>> audit.verdict, bool(audit), audit.specifications[0].kind
-        ('violated', False, 'robust_stability')
-        """
-        from phea.answers import VerifyAnswer
-
-        return self._ask(VerifyAnswer, "verify", {"prove": prove, "on_machine": on_machine}, progress)
-
-    def design(
-        self,
-        *,
-        seed: int | None = None,
-        repair: bool = True,
-        files: bool = False,
-        progress: Progress = False,
-    ) -> Design:
-        """Finds a controller and a prefilter for the specifications: `phea design`.
-
-        Parameters
-        ----------
-        seed
-            Seed of the random starting points, instead of that of the project.
-        repair
-            Design again with a plant that contradicts the verdict in nonlinear simulation.
-        files
-            Every stage as a file, as with ``--out``.
-        progress
-            ``True`` for a bar, or a callable that takes stage and fraction.
-        """
-        from phea.results import Design
-
-        options = {"seed": seed, "repair": repair, "files": files}
-        return self._ask(Design, "design", options, progress, self)
-
-    def simulate(
-        self,
-        *,
-        format: Literal["csv", "parquet"] = "csv",
-        figures: bool = True,
-        check: bool = False,
-        progress: Progress = False,
-    ) -> Simulation:
-        """Simulates the nonlinear machine in every scenario: `phea simulate`.
-
-        Parameters
-        ----------
-        format
-            Format of the tables over time.
-        figures
-            Figures among the files; they take most of the time of a short run.
-        check
-            Simulate each scenario a second time at a tenth of the tolerance.
-        progress
-            ``True`` for a bar, or a callable that takes stage and fraction.
-        """
-        from phea.results import Simulation
-
-        options = {"format": format, "files": figures, "check": check}
-        return self._ask(Simulation, "simulate", options, progress)
-
-    def campaign(
-        self,
-        *,
-        runs: int,
-        seed: int = 1,
-        out: PathLike | None = None,
-        threads: int | None = None,
-        files: bool = True,
-        progress: Progress = False,
-    ) -> Campaign:
-        """Simulates the machine many times with random parameters: `phea campaign`.
-
-        Parameters
-        ----------
-        runs
-            Number of runs.
-        seed
-            Seed of all random numbers; with the index of a run it determines its parameters.
-        out
-            Table that grows row by row, and from which the same call continues.
-        threads
-            Number of threads; the rows do not depend on it.
-        files
-            The table for other programs and the figures among the files.
-        progress
-            ``True`` for a bar, or a callable that takes stage and fraction.
-        """
-        from phea.results import Campaign
-
-        if isinstance(runs, int) and runs < 1:
-            raise ValueError(f"runs is at least 1, not {runs}")
-        table = None if out is None else os.fspath(out)
-        options = {"runs": runs, "seed": seed, "threads": threads, "files": files, "table": table}
-        return self._ask(Campaign, "campaign", options, progress, table)
-
-    def campaign_run(self, run: int, *, seed: int = 1, progress: Progress = False) -> CampaignRunAnswer:
-        """One run of a campaign in full, by its index: `phea campaign --run`."""
-        from phea.answers import CampaignRunAnswer
-
-        return self._ask(CampaignRunAnswer, "campaign", {"run": run, "seed": seed}, progress)
-
-    def alternatives(
-        self,
-        *,
-        front: str | None = None,
-        sweep: str | None = None,
-        points: int | None = None,
-        frequencies: str | None = None,
-        files: bool = True,
-        progress: Progress = False,
-    ) -> AlternativesAnswer:
-        """Sizes, designs, audits and simulates each alternative: `phea alternatives`."""
-        from phea.answers import AlternativesAnswer
-
-        options = {"front": front, "sweep": sweep, "points": points}
-        options |= {"frequencies": frequencies, "files": files}
-        return self._ask(AlternativesAnswer, "alternatives", options, progress)
-
-    def bench(self, *, progress: Progress = False) -> BenchAnswer:
-        """Simulates static tests of the servovalve: `phea bench`."""
-        from phea.answers import BenchAnswer
-
-        return self._ask(BenchAnswer, "bench", {}, progress)
-
-    def report(
-        self, *, alternatives: bool = False, files: bool = False, progress: Progress = False
-    ) -> ReportAnswer:
-        """All results as one HTML page, ``report.files``: `phea report`."""
-        from phea.answers import ReportAnswer
-
-        options = {"alternatives": alternatives, "files": files}
-        return self._ask(ReportAnswer, "report", options, progress)
-
-    def shaping(self, *, prefilter: bool = False) -> Shaping:
-        """Shapes the controller, or the prefilter, by hand: `phea shape`."""
-        from phea.shaping import Shaping
-
-        return Shaping(self, prefilter)
-
-    def _ask(
-        self,
-        cls: type[AnyAnswer],
-        name: str,
-        options: dict[str, Any],
-        progress: Progress,
-        context: object = None,
-    ) -> AnyAnswer:
-        return answered(
-            cls, name, lambda report: self._native.answer(name, options, report), progress, context
-        )
-
-
-def _warned(native: NativeProject) -> Project:
-    if native.warnings:
-        warnings.warn(native.warnings, ProjectWarning, stacklevel=3)
-    return Project(native)
 
 
 def _held(
@@ -423,9 +203,11 @@ def read(
     with open(path, "rb"):  # a missing or unreadable file is an OSError
         settings = [setting(key, value) for key, value in (set or {}).items()]
     try:
-        return _warned(_native.Project.read(os.fspath(path), settings, texts(catalogues)))
+        native = _native.Project.read(os.fspath(path), settings, texts(catalogues))
     except _native.Refused as refused:
         raise translated(refused) from None
+    warn_of(native)
+    return Project(native)
 
 
 def loads(
@@ -462,4 +244,5 @@ def loads(
         native = _native.Project.held(path, list(held.items()), settings, texts(catalogues))
     except _native.Refused as refused:
         raise translated(refused) from None
-    return _warned(native)
+    warn_of(native)
+    return Project(native)

@@ -50,7 +50,10 @@ def _raise_if_stopped(reason: BaseException | bool | None, name: str, answer: An
 
 def translated(refused: _native.Refused) -> Exception:
     """The exception of the package for one of the extension."""
+    from phea._words import python_words
+
     kind, json_text, text = refused.args
+    text = python_words(text)
     if kind == "project":
         return ProjectError(text, json_text)
     if kind == "no_answer":

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from phea import _native
+from phea._commands import MOST_SEED
 from phea._project import Project
 from phea._request import answered
+from phea._texts import whole
 
 if TYPE_CHECKING:
     from phea._native import Project as NativeProject
@@ -29,6 +31,11 @@ if TYPE_CHECKING:
         | IdentifiedResponsesAnswer
         | IdentifiedValveAnswer
     )
+
+
+_MOST_STARTS = 2**16 - 1
+# Fewest and most repetitions of a bootstrap, as of the command.
+_REPETITIONS = (50, 1_000_000)
 
 
 def compare(*projects: Project, progress: Progress = False) -> CompareAnswer:
@@ -105,6 +112,11 @@ def identify(
     }
     if of not in classes:
         raise ValueError(f"of is one of {', '.join(classes)}, not {of!r}")
+    if period is not None and segment is not None:
+        raise TypeError("identify() takes a period or a segment, not both")
+    whole("starts", starts, 1, _MOST_STARTS)
+    whole("seed", seed, 0, MOST_SEED)
+    whole("bootstrap", bootstrap, *_REPETITIONS)
     options: dict[str, Any] = {
         "starts": starts,
         "seed": seed,
@@ -117,6 +129,9 @@ def identify(
         "side": side,
     }
     paths = [os.fspath(path) for path in files]
+    for path in paths:
+        with open(path, "rb"):  # a missing or unreadable file is an OSError
+            pass
     native = _native_of(project)
     return answered(
         classes[of],

@@ -25,7 +25,7 @@ def toml(value: object) -> str:
         return str(value)
     if isinstance(value, Mapping):
         inside = ", ".join(f'"{key}" = {toml(part)}' for key, part in value.items())
-        return "{ " + inside + " }"
+        return "{ " + inside + " }" if inside else "{}"
     if isinstance(value, Sequence):
         return "[" + ", ".join(toml(part) for part in value) + "]"
     if hasattr(value, "__float__"):
@@ -43,6 +43,19 @@ def texts(paths: Sequence[PathLike]) -> list[str]:
     if isinstance(paths, str | os.PathLike):
         raise TypeError(f"catalogues is a list of paths, not {paths!r}")
     return [os.fspath(path) for path in paths]
+
+
+def whole(name: str, value: object, least: int, most: int) -> None:
+    """An error unless the value is absent, or a whole number in this range."""
+    if value is None:
+        return
+    if isinstance(value, bool) or not hasattr(value, "__index__"):
+        raise TypeError(f"{name} is a whole number, not {value!r}")
+    number = value.__index__()
+    if number < least:
+        raise ValueError(f"{name} is at least {least}, not {number}")
+    if number > most:
+        raise ValueError(f"{name} is at most {most}, not {number}")
 
 
 def text_of(value: str | float | None) -> str | None:

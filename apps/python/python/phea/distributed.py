@@ -9,29 +9,45 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+import socket
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from difflib import get_close_matches
+from functools import cache
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, overload
 
 from phea import _native
-from phea._extras import imported
+from phea._commands import MOST_RUNS, MOST_SEED
+from phea._engines import Engine, engine_of
 from phea._request import translated
+from phea._texts import whole
 from phea.errors import Stopped
 
 if TYPE_CHECKING:
     from phea._project import Progress, Project
     from phea._record import Answer
     from phea._texts import PathLike, Value
-    from phea.results import Campaign
+    from phea.answers import (
+        AlternativesAnswer,
+        BenchAnswer,
+        LinearizeAnswer,
+        ReportAnswer,
+        SizeAnswer,
+        VerifyAnswer,
+    )
+    from phea.results import Campaign, Check, Design, Simulation
+
+    Values: TypeAlias = Sequence[Value]
 
 __all__ = ["WorkerMismatch", "campaign", "identity", "sweep"]
 
+# Commands of a sweep: the methods of a project that return an answer.
+_COMMANDS = (
+    *("check", "size", "linearize", "verify", "design", "simulate", "campaign", "campaign_run"),
+    *("alternatives", "bench", "report"),
+)
 # Runs of a chunk: some seconds of work, so that the engine's overhead is small.
 _CHUNK = 1000
-# Times that an engine may repeat a chunk whose worker has died.
-_RETRIES = 3
-
-Result = TypeVar("Result")
 
 
 class WorkerMismatch(RuntimeError):
@@ -49,6 +65,10 @@ class WorkerMismatch(RuntimeError):
         listed = "; ".join(f"{name} has {found}" for name, found in sorted(workers.items()))
         super().__init__(f"every worker needs phea {own}: {listed}")
         self.workers = workers
+        self._own = own
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (WorkerMismatch, (self._own, self.workers))
 
 
 def identity() -> str:
@@ -59,97 +79,31 @@ def identity() -> str:
     >>> identity() == identity(), identity().startswith(_native.VERSION)
     (True, True)
     """
+    return f"{_native.VERSION} ({_build()[:16]})"
+
+
+@cache
+def _build() -> str:
     with open(str(_native.__file__), "rb") as library:
-        build = hashlib.sha256(library.read()).hexdigest()
-    return f"{_native.VERSION} ({build[:16]})"
+        return hashlib.sha256(library.read()).hexdigest()
 
 
-class _Engine(Protocol):
-    """What a campaign needs of an engine."""
-
-    def identities(self) -> dict[str, str]:
-        """Identity of the phea of each worker, by its name."""
-
-    def results(
-        self, work: Callable[..., Result], arguments: Sequence[tuple[Any, ...]]
-    ) -> Generator[tuple[int, Result], None, None]:
-        """Results by the places of their arguments, in the order in which they arrive."""
-
-
-class _Dask:
-    """Client of Dask's `distributed`."""
-
-    def __init__(self, client: Any) -> None:
-        self._client = client
-
-    def identities(self) -> dict[str, str]:
-        found: dict[str, str] = self._client.run(identity)
-        return found
-
-    def results(
-        self, work: Callable[..., Result], arguments: Sequence[tuple[Any, ...]]
-    ) -> Generator[tuple[int, Result], None, None]:
-        distributed = imported("distributed", "dask")
-        submit = self._client.submit
-        futures = {submit(work, *one, pure=False, retries=_RETRIES): i for i, one in enumerate(arguments)}
-        try:
-            for future in distributed.as_completed(list(futures)):
-                yield futures[future], future.result()
-        finally:
-            self._client.cancel(list(futures))
-
-
-class _Ray:
-    """The module `ray`, connected to a cluster."""
-
-    def __init__(self, ray: Any) -> None:
-        self._ray = ray
-
-    def identities(self) -> dict[str, str]:
-        from importlib import import_module
-
-        affinity = import_module("ray.util.scheduling_strategies").NodeAffinitySchedulingStrategy
-        remote = self._ray.remote(num_cpus=0)(identity)
-        nodes = [node["NodeID"] for node in self._ray.nodes() if node["Alive"]]
-        found = [remote.options(scheduling_strategy=affinity(node, soft=False)).remote() for node in nodes]
-        return dict(zip(nodes, self._ray.get(found), strict=True))
-
-    def results(
-        self, work: Callable[..., Result], arguments: Sequence[tuple[Any, ...]]
-    ) -> Generator[tuple[int, Result], None, None]:
-        remote = self._ray.remote(max_retries=_RETRIES)(work)
-        places = {remote.remote(*one): i for i, one in enumerate(arguments)}
-        waiting = list(places)
-        try:
-            while waiting:
-                done, waiting = self._ray.wait(waiting, num_returns=1)
-                for reference in done:
-                    yield places[reference], self._ray.get(reference)
-        finally:
-            for reference in waiting:
-                self._ray.cancel(reference, force=True)
-
-
-def _engine_of(client: Any) -> _Engine:
-    if getattr(client, "__name__", None) == "ray":
-        return _Ray(client)
-    if all(hasattr(client, name) for name in ("submit", "run", "cancel")):
-        return _Dask(client)
-    if callable(getattr(client, "results", None)):
-        engine: _Engine = client
-        return engine
-    raise TypeError(f"client is a distributed.Client or the module ray, not {client!r}")
-
-
-def _expect_same_phea(engine: _Engine) -> None:
+def _expect_same_phea(engine: Engine) -> None:
     own = identity()
     others = {name: found for name, found in engine.identities().items() if found != own}
     if others:
         raise WorkerMismatch(own, others)
 
 
-def _lines(project: Project, seed: int, first: int, end: int) -> str:
+def _expect_same_phea_here(expected: str) -> None:
+    """The check by a worker itself, which may have joined after the campaign began."""
+    if identity() != expected:
+        raise WorkerMismatch(expected, {socket.gethostname(): identity()})
+
+
+def _lines(project: Project, seed: int, first: int, end: int, expected: str) -> str:
     """Lines of a chunk, computed by a worker with one thread."""
+    _expect_same_phea_here(expected)
     try:
         return _native.campaign_lines(project._native, seed, first, end, 1)
     except _native.Refused as refused:
@@ -182,13 +136,15 @@ def campaign(
     Raises
     ------
     WorkerMismatch
-        If the phea of a worker is another one, before any run.
+        If the phea of a worker is another one, before any run; of a worker that joins later,
+        before its first one.
     """
     from phea._progress import callable_of
 
-    if chunk < 1:
-        raise ValueError(f"a chunk has at least one run, not {chunk}")
-    engine = _engine_of(client)
+    whole("runs", runs, 1, MOST_RUNS)
+    whole("seed", seed, 0, MOST_SEED)
+    whole("chunk", chunk, 1, MOST_RUNS)
+    engine = engine_of(client)
     _expect_same_phea(engine)
     table = _native.CampaignTable(os.fspath(out))
     try:
@@ -198,7 +154,7 @@ def campaign(
             except _native.Refused as refused:
                 raise translated(refused) from None
             chunks = [(first, min(first + chunk, runs)) for first in range(stored, runs, chunk)]
-            arguments = [(project, seed, first, end) for first, end in chunks]
+            arguments = [(project, seed, first, end, identity()) for first, end in chunks]
             # whatever ends the loop, what is queued is cancelled at once
             with closing(engine.results(_lines, arguments)) as results:
                 for done in _in_order(results, table.append):
@@ -223,19 +179,70 @@ def _in_order(
             place += 1
 
 
-def _answer(project: Project, values: Mapping[str, Value], command: str, options: dict[str, Any]) -> Any:
+def _answer(
+    project: Project,
+    values: Mapping[str, Value],
+    command: str,
+    options: dict[str, Any],
+    expected: str,
+) -> Any:
     """Answer of a command on a project with other values, computed by a worker."""
+    _expect_same_phea_here(expected)
     return getattr(project.set(values), command)(**options)
 
 
+@overload
 def sweep(
-    project: Project,
-    path: str,
-    values: Sequence[Value],
-    command: str,
-    client: Any,
-    **options: Any,
-) -> list[Answer]:
+    project: Project, path: str, values: Values, command: Literal["check"],
+    client: Any, **options: Any,
+) -> list[Check]: ...
+@overload
+def sweep(
+    project: Project, path: str, values: Values, command: Literal["size"],
+    client: Any, **options: Any,
+) -> list[SizeAnswer]: ...
+@overload
+def sweep(
+    project: Project, path: str, values: Values, command: Literal["linearize"],
+    client: Any, **options: Any,
+) -> list[LinearizeAnswer]: ...
+@overload
+def sweep(
+    project: Project, path: str, values: Values, command: Literal["verify"],
+    client: Any, **options: Any,
+) -> list[VerifyAnswer]: ...
+@overload
+def sweep(
+    project: Project, path: str, values: Values, command: Literal["design"],
+    client: Any, **options: Any,
+) -> list[Design]: ...
+@overload
+def sweep(
+    project: Project, path: str, values: Values, command: Literal["simulate"],
+    client: Any, **options: Any,
+) -> list[Simulation]: ...
+@overload
+def sweep(
+    project: Project, path: str, values: Values, command: Literal["alternatives"],
+    client: Any, **options: Any,
+) -> list[AlternativesAnswer]: ...
+@overload
+def sweep(
+    project: Project, path: str, values: Values, command: Literal["bench"],
+    client: Any, **options: Any,
+) -> list[BenchAnswer]: ...
+@overload
+def sweep(
+    project: Project, path: str, values: Values, command: Literal["report"],
+    client: Any, **options: Any,
+) -> list[ReportAnswer]: ...
+@overload
+def sweep(
+    project: Project, path: str, values: Values, command: str, client: Any, **options: Any
+) -> list[Answer]: ...
+def sweep(
+    project: Project, path: str, values: Values, command: str, client: Any, **options: Any
+) -> Sequence[Answer]:
     """Answers of a command for each value of a key, in the order of the values.
 
     Parameters
@@ -249,11 +256,13 @@ def sweep(
     options
         Options of the method.
     """
-    if command.startswith("_") or not callable(getattr(project, command, None)):
-        raise ValueError(f"no command is called {command!r}")
-    engine = _engine_of(client)
+    if command not in _COMMANDS:
+        near = get_close_matches(command, _COMMANDS, 1)
+        hint = f"; did you mean {near[0]!r}?" if near else ""
+        raise ValueError(f"no command is called {command!r}{hint}")
+    engine = engine_of(client)
     _expect_same_phea(engine)
-    arguments = [(project, {path: value}, command, options) for value in values]
+    arguments = [(project, {path: value}, command, options, identity()) for value in values]
     with closing(engine.results(_answer, arguments)) as results:
         found = dict(results)
     return [found[place] for place in range(len(arguments))]

@@ -51,11 +51,15 @@ class ProjectError(ValueError):
 
     @property
     def diagnostics(self) -> tuple[DiagnosticAnswer, ...]:
-        """Errors, and warnings found with them."""
-        from phea._record import fields_of
+        """Errors, and warnings found with them; options of the command as arguments of Python."""
+        from phea._fields import fields_of
+        from phea._words import python_words
         from phea.answers import DiagnosticAnswer
 
         rows = self.json["errors"]
+        for row in rows:
+            for name in ("message", "file", "expected", "help"):
+                row[name] = row[name] and python_words(row[name])
         return tuple(DiagnosticAnswer(fields_of(DiagnosticAnswer, row)) for row in rows)
 
 

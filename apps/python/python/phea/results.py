@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
-from phea.answers import CampaignAnswer, DesignCommandAnswer, ScenarioAnswer, SimulateAnswer
+from phea.answers import (
+    CampaignAnswer,
+    CheckAnswer,
+    DerivedQuantityAnswer,
+    DesignCommandAnswer,
+    ScenarioAnswer,
+    SimulateAnswer,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,7 +23,56 @@ if TYPE_CHECKING:
     from phea._project import Project
     from phea.table import Table
 
-__all__ = ["Campaign", "Design", "Run", "Simulation"]
+__all__ = ["Campaign", "Check", "Derived", "Design", "Run", "Simulation"]
+
+
+class Derived(tuple[DerivedQuantityAnswer, ...]):
+    """Derived quantities in the order of the command, which are also found by their names.
+
+    Examples
+    --------
+    >>> import phea
+    >>> derived = phea.example("ybitu/hose").check().derived
+    >>> derived["line.volume"].unit, "line.volume" in derived, derived[0].name
+    ('m3', True, 'cylinder.area_a')
+    """
+
+    __slots__ = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names, in order."""
+        return tuple(one.name for one in self)
+
+    @overload
+    def __getitem__(self, key: str) -> DerivedQuantityAnswer: ...
+    @overload
+    def __getitem__(self, key: SupportsIndex) -> DerivedQuantityAnswer: ...
+    @overload
+    def __getitem__(self, key: slice) -> tuple[DerivedQuantityAnswer, ...]: ...
+    def __getitem__(self, key: str | SupportsIndex | slice) -> Any:
+        if not isinstance(key, str):
+            return super().__getitem__(key)
+        found = next((one for one in self if one.name == key), None)
+        if found is None:
+            near = get_close_matches(key, self.names, 1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            raise KeyError(f"no derived quantity is called {key!r}{hint}")
+        return found
+
+    def __contains__(self, value: object) -> bool:
+        return value in self.names if isinstance(value, str) else super().__contains__(value)
+
+
+class Check(CheckAnswer):
+    """Answer of `Project.check`, whose derived quantities are found by their names."""
+
+    __slots__ = ()
+
+    @property
+    def derived(self) -> Derived:  # type: ignore[override]
+        """Quantities that follow from the project."""
+        return Derived(self._fields()["derived"])
 
 
 class Design(DesignCommandAnswer):
@@ -64,7 +120,7 @@ class Run:
         return hash((self.metrics, self.table))
 
     def __repr__(self) -> str:
-        return f"Run({self.metrics.name!r}, {self.table!r})"
+        return f"Run({self.metrics.name!r}, status={self.metrics.status!r}, {self.table!r})"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (Run, (self.metrics, self.table))

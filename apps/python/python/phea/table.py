@@ -10,12 +10,12 @@ from phea import _native
 from phea._extras import imported
 
 if TYPE_CHECKING:
-    import numpy as np
     import pandas as pd
     import pyarrow as pa
-    from numpy.typing import NDArray
 
-    Column = NDArray[np.float64] | list[str]
+
+# Number of columns in the line that a table prints.
+_SHOWN = 6
 
 
 class Table(Mapping[str, Any]):
@@ -51,7 +51,7 @@ class Table(Mapping[str, Any]):
         """The table as the command writes it."""
         return self._csv
 
-    def __getitem__(self, name: str) -> Column:
+    def __getitem__(self, name: str) -> Any:
         columns = self._all()
         if name not in columns:
             from difflib import get_close_matches
@@ -59,8 +59,7 @@ class Table(Mapping[str, Any]):
             near = get_close_matches(name, columns, 1)
             hint = f"; did you mean {near[0]!r}?" if near else ""
             raise KeyError(f"no column is called {name!r}{hint}")
-        found: Column = columns[name]
-        return found
+        return columns[name]
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
@@ -88,7 +87,8 @@ class Table(Mapping[str, Any]):
     def __repr__(self) -> str:
         columns = self._all()
         rows = len(next(iter(columns.values()), ()))
-        return f"Table({rows} rows: {', '.join(columns)})"
+        names = [*list(columns)[:_SHOWN], "..."] if len(columns) > _SHOWN else list(columns)
+        return f"Table({rows} rows, {len(columns)} columns: {', '.join(names)})"
 
     def to_pandas(self) -> pd.DataFrame:
         """The table as a pandas frame; ``attrs["units"]`` has the unit of each column."""

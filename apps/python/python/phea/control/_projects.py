@@ -5,15 +5,12 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping
 from pathlib import PurePath
-from typing import TYPE_CHECKING
 
 from phea import _native
-from phea._project import _warned
+from phea._project import Project
 from phea._request import translated
 from phea._texts import toml
-
-if TYPE_CHECKING:
-    from phea._project import Project
+from phea._warnings import warn_of
 
 # Tables of a declared plant; a rig has others.
 PLANTS = ["plant", "family", "uncertainty", "uncertainty_direction"]
@@ -53,4 +50,5 @@ def made(
         native = _native.Project.held(path, list(held.items()), settings, catalogues)
     except _native.Refused as refused:
         raise translated(refused) from None
-    return _warned(native)
+    warn_of(native, None if project is None else project._native)
+    return Project(native)
