@@ -1,6 +1,7 @@
 //! The answer of a command.
 
 use phea_workbench::answer::{Answer as CommandAnswer, OutputFile, picture_of};
+use phea_workbench::figure::FigureError;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -43,6 +44,23 @@ impl FinishedAnswer {
     /// The text as a fragment of a page.
     fn html(&self, py: Python<'_>) -> String {
         py.detach(|| self.answer.document.html())
+    }
+
+    /// The figures of the text as a page has them, by name: drawings as SVG and as PNG.
+    fn figures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let drawn = py.detach(|| {
+            let drawings = self.answer.document.drawings().into_iter();
+            let both = drawings.map(|drawing| Ok((picture_of(&drawing)?, drawing)));
+            both.collect::<Result<Vec<_>, FigureError>>().map_err(|error| error.to_string())
+        });
+        let figures = PyDict::new(py);
+        for (picture, drawing) in drawn.map_err(PyRuntimeError::new_err)? {
+            figures.set_item(&drawing.name, PyBytes::new(py, &drawing.bytes))?;
+            if let Some(picture) = picture {
+                figures.set_item(&picture.name, PyBytes::new(py, &picture.bytes))?;
+            }
+        }
+        Ok(figures)
     }
 
     /// True if the answer is yes.
