@@ -1,7 +1,6 @@
 //! The answer of a command.
 
 use phea_workbench::answer::{Answer as CommandAnswer, OutputFile, picture_of};
-use phea_workbench::figure::FigureError;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -46,19 +45,12 @@ impl FinishedAnswer {
         py.detach(|| self.answer.document.html())
     }
 
-    /// The figures of the text as a page has them, by name: drawings as SVG and as PNG.
+    /// The figures that a page of the text has, by name, as SVG.
     fn figures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let drawn = py.detach(|| {
-            let drawings = self.answer.document.drawings().into_iter();
-            let both = drawings.map(|drawing| Ok((picture_of(&drawing)?, drawing)));
-            both.collect::<Result<Vec<_>, FigureError>>().map_err(|error| error.to_string())
-        });
+        let drawings = py.detach(|| self.answer.document.drawings());
         let figures = PyDict::new(py);
-        for (picture, drawing) in drawn.map_err(PyRuntimeError::new_err)? {
+        for drawing in drawings {
             figures.set_item(&drawing.name, PyBytes::new(py, &drawing.bytes))?;
-            if let Some(picture) = picture {
-                figures.set_item(&picture.name, PyBytes::new(py, &picture.bytes))?;
-            }
         }
         Ok(figures)
     }
@@ -88,4 +80,13 @@ impl FinishedAnswer {
         }
         Ok(files)
     }
+}
+
+/// The PNG of a drawing.
+#[pyfunction(name = "picture_of")]
+pub(crate) fn png_of<'py>(py: Python<'py>, svg: Vec<u8>) -> PyResult<Bound<'py, PyBytes>> {
+    let drawn = py.detach(|| picture_of(&OutputFile::new("drawing.svg", svg)));
+    let picture = drawn.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    let picture = picture.ok_or_else(|| PyRuntimeError::new_err("this is no drawing"))?;
+    Ok(PyBytes::new(py, &picture.bytes))
 }

@@ -21,7 +21,7 @@ mod watch;
 #[pyo3::pymodule(gil_used = false)]
 mod _native {
     #[pymodule_export]
-    use crate::answer::FinishedAnswer;
+    use crate::answer::{FinishedAnswer, png_of};
     #[pymodule_export]
     use crate::bounds::templates_and_bounds;
     #[pymodule_export]
