@@ -132,9 +132,9 @@ impl IdentifyOptionError {
     /// use phea_workbench::command::{IdentifyOptions, OptionSpelling};
     /// let options = IdentifyOptions { side: Some(Default::default()), ..IdentifyOptions::default() };
     /// let fault = options.request().unwrap_err();
-    /// let [shell, script] = [OptionSpelling::CommandLine, OptionSpelling::Keyword].map(|one| fault.words(one));
-    /// assert_eq!(shell, "`--side` has no effect on `--of valve`: it belongs to `--of line`");
-    /// assert_eq!(script, "`side` has no effect on `of=\"valve\"`: it belongs to `of=\"line\"`");
+    /// let in_a_shell = fault.words(OptionSpelling::CommandLine);
+    /// assert_eq!(in_a_shell, "`--side` has no effect on `--of valve`: it belongs to `--of line`");
+    /// assert!(fault.words(OptionSpelling::Keyword).starts_with("`side` has no effect on"));
     /// ```
     pub fn words(&self, spelling: OptionSpelling) -> String {
         let name = |option: &str| match spelling {
