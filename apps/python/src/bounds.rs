@@ -4,7 +4,7 @@ use numpy::{Complex64, PyArray1, PyArray2};
 use phea_workbench::bound_values::{ForbiddenGains, FrequencyValues, bound_values};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyComplex, PyTuple};
 
 use crate::project::HeldProject;
 use crate::watch::PythonWatch;
@@ -41,7 +41,7 @@ fn values<'py>(py: Python<'py>, found: FrequencyValues) -> PyResult<Bound<'py, P
     let specifications: PyResult<Vec<_>> = specifications
         .map(|one| (one.number, one.kind, bound(py, one.forbidden)?).into_pyobject(py))
         .collect();
-    let nominal_loop = found.nominal_loop.as_ref().map(complex);
+    let nominal_loop = found.nominal_loop.map(|[re, im]| PyComplex::from_doubles(py, re, im));
     let together = bound(py, found.together)?;
     (found.frequency_rad_per_s, plants, responses, nominal_loop, specifications?, together).into_pyobject(py)
 }
