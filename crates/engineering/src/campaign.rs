@@ -108,11 +108,16 @@ pub enum CampaignError {
     },
     /// The stored rows belong to another campaign.
     #[error(
-        "line {line} of the kept table is not a row of this campaign: choose another folder, or remove the table"
+        "line {line} of the kept table {}: choose another folder, or remove the table",
+        other_seed(*.seed, *.stored_seed)
     )]
     OtherCampaign {
         /// Line number, from 1.
         line: usize,
+        /// Requested seed.
+        seed: u32,
+        /// Seed of the row, if it belongs to the same project and its seed is one of the first.
+        stored_seed: Option<u32>,
     },
     /// A stored row has been altered.
     #[error(
@@ -135,9 +140,11 @@ pub enum CampaignError {
     },
     /// More rows are stored than requested.
     #[error(
-        "the kept table has {stored} rows, more than the {requested} that are requested: choose another folder"
+        "the kept table has {stored} rows, more than the {requested} that are requested with seed {seed}: choose another folder, or request {stored} runs or more"
     )]
     MoreStored {
+        /// Seed of the rows.
+        seed: u32,
         /// Number of rows.
         stored: u64,
         /// Number of runs.
@@ -155,6 +162,14 @@ pub enum CampaignError {
     /// A run, written as settings, is no longer a valid project.
     #[error("{0}")]
     Settings(Box<Refusal>),
+}
+
+/// The seeds of a stored row and of the requested campaign.
+fn other_seed(requested: u32, stored: Option<u32>) -> String {
+    match stored {
+        Some(stored) => format!("was drawn with seed {stored}, and this campaign has seed {requested}"),
+        None => format!("is not a row of this campaign, which has seed {requested}"),
+    }
 }
 
 /// Fault of a line of the stored table.

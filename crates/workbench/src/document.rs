@@ -2,6 +2,7 @@
 //! procedure builds the tree; the terminal and the page print it.
 
 mod cell;
+mod later;
 mod number;
 mod page;
 mod table;
@@ -15,7 +16,9 @@ pub(crate) use table::Table;
 pub(crate) use typeset::capital;
 pub use typeset::{prose, typeset};
 
+use crate::answer::{OutputFile, picture_files};
 use crate::figure::Figure;
+use later::LaterBlocks;
 
 /// Blocks in the order in which they are read.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -65,6 +68,8 @@ enum Block {
     SideBySide(Document),
     /// Lines that are printed unchanged.
     Preformatted(String),
+    /// Blocks of the page that are made when it is.
+    Later(LaterBlocks),
 }
 
 impl Document {
@@ -198,9 +203,19 @@ impl Document {
         self.blocks.push(Block::Preformatted(text.into()));
     }
 
+    /// Blocks of the page that are made when it is; a terminal leaves them out.
+    pub(crate) fn later(&mut self, make: impl FnOnce() -> Document + Send + 'static) {
+        self.blocks.push(Block::Later(LaterBlocks::new(make)));
+    }
+
     /// Appends another document.
     pub(crate) fn append(&mut self, other: Document) {
         self.blocks.extend(other.blocks);
+    }
+
+    /// The figures of the document as drawings, in order: SVG, each under its name.
+    pub fn drawings(&self) -> Vec<OutputFile> {
+        picture_files(&self.clone().into_figures())
     }
 
     /// The figures of the document, in order.
@@ -208,6 +223,7 @@ impl Document {
         let figures = self.blocks.into_iter().flat_map(|block| match block {
             Block::Figure(figure) => vec![*figure],
             Block::SideBySide(document) => document.into_figures(),
+            Block::Later(later) => later.blocks().clone().into_figures(),
             _ => vec![],
         });
         figures.collect()

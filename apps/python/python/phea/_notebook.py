@@ -162,9 +162,13 @@ def _html(value: Shown, limit: int) -> str:
         return _project(value, limit)
     if not isinstance(value, Answer):
         raise TypeError(f"a project or an answer is shown, not {value!r}")
+    drawn = _figures(value.figures)
+    named = {figure.title: figure for figure in drawn}
     parts = _parts(_document(value))
     placed = {part.title for part in parts if isinstance(part, _Figure)}
-    below: list[Part] = [figure for figure in _figures(value.figures) if figure.title not in placed]
+    # in its place, a figure has the smaller of its formats too
+    parts = [named.get(part.title, part) if isinstance(part, _Figure) else part for part in parts]
+    below: list[Part] = [figure for figure in drawn if figure.title not in placed]
     parts += ['<div class="figures">', *below, "</div>"] if below else []
     if _size(parts) > limit:
         figures: list[Part] = [part for part in parts if isinstance(part, _Figure)]

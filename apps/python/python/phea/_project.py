@@ -34,8 +34,10 @@ if TYPE_CHECKING:
         VerifyAnswer,
     )
 
+    from phea.bounds import Bounds, Templates
     from phea.linear import Family, Linear
     from phea.results import Campaign, Design, Simulation
+    from phea.rig import Impedance, Stiffness
     from phea.shaping import Shaping
 
     AnyAnswer = TypeVar("AnyAnswer", bound=Answer)
@@ -173,6 +175,34 @@ class Project(Shown):
         from phea.linear import Family
 
         return Family(self)
+
+    @property
+    def templates(self) -> Templates:
+        """Responses of the plants at the design frequencies; computed anew at each use."""
+        from phea.bounds import Templates
+
+        return Templates.of(self)
+
+    @property
+    def bounds(self) -> Bounds:
+        """Bounds of the nominal loop at the design frequencies; computed anew at each use."""
+        from phea.bounds import Bounds
+
+        return Bounds.of(self)
+
+    @property
+    def stiffness(self) -> Stiffness | None:
+        """Hydraulic stiffness over the stroke; ``None`` without a rig."""
+        from phea.rig import Stiffness
+
+        return Stiffness.of(self)
+
+    @property
+    def impedance(self) -> Impedance | None:
+        """Driving-point impedance of the rig; ``None`` without a rig."""
+        from phea.rig import Impedance
+
+        return Impedance.of(self)
 
     def check(self) -> CheckAnswer:
         """Validates the project and derives every quantity: `phea check`."""
