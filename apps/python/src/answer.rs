@@ -1,6 +1,6 @@
 //! The answer of a command.
 
-use phea_workbench::answer::{Answer as CommandAnswer, OutputFile, picture_of};
+use phea_workbench::answer::{Answer as CommandAnswer, OutputFile, picture_at, picture_of};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -47,7 +47,7 @@ impl FinishedAnswer {
 
     /// The figures that a page of the text has, by name, as SVG.
     fn figures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let drawings = py.detach(|| self.answer.document.drawings());
+        let drawings = py.detach(|| self.answer.drawings());
         let figures = PyDict::new(py);
         for drawing in drawings {
             figures.set_item(&drawing.name, PyBytes::new(py, &drawing.bytes))?;
@@ -82,10 +82,11 @@ impl FinishedAnswer {
     }
 }
 
-/// The PNG of a drawing.
+/// The PNG of a drawing, with this many pixels to a unit of the drawing.
 #[pyfunction(name = "picture_of")]
-pub(crate) fn png_of<'py>(py: Python<'py>, svg: Vec<u8>) -> PyResult<Bound<'py, PyBytes>> {
-    let drawn = py.detach(|| picture_of(&OutputFile::new("drawing.svg", svg)));
+#[pyo3(signature = (svg, scale=2.0))]
+pub(crate) fn png_of<'py>(py: Python<'py>, svg: Vec<u8>, scale: f64) -> PyResult<Bound<'py, PyBytes>> {
+    let drawn = py.detach(|| picture_at(&OutputFile::new("drawing.svg", svg), scale));
     let picture = drawn.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
     let picture = picture.ok_or_else(|| PyRuntimeError::new_err("this is no drawing"))?;
     Ok(PyBytes::new(py, &picture.bytes))

@@ -108,16 +108,15 @@ pub enum CampaignError {
     },
     /// The stored rows belong to another campaign.
     #[error(
-        "line {line} of the kept table {}: choose another folder, or remove the table",
-        other_seed(*.seed, *.stored_seed)
+        "line {line} of the kept table {stored_seed}, and this campaign has seed {seed}: choose another folder, or remove the table"
     )]
     OtherCampaign {
         /// Line number, from 1.
         line: usize,
         /// Requested seed.
         seed: u32,
-        /// Seed of the row, if it belongs to the same project and its seed is one of the first.
-        stored_seed: Option<u32>,
+        /// Seed of the row.
+        stored_seed: StoredSeed,
     },
     /// A stored row has been altered.
     #[error(
@@ -164,12 +163,15 @@ pub enum CampaignError {
     Settings(Box<Refusal>),
 }
 
-/// The seeds of a stored row and of the requested campaign.
-fn other_seed(requested: u32, stored: Option<u32>) -> String {
-    match stored {
-        Some(stored) => format!("was drawn with seed {stored}, and this campaign has seed {requested}"),
-        None => format!("is not a row of this campaign, which has seed {requested}"),
-    }
+/// Seed of a stored row that belongs to another campaign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum StoredSeed {
+    /// A campaign of this project with this seed has the row.
+    #[error("was drawn with seed {0}")]
+    Other(u32),
+    /// No campaign of this project with a small seed has it.
+    #[error("is of another project or an unknown seed")]
+    Unknown,
 }
 
 /// Fault of a line of the stored table.

@@ -16,7 +16,6 @@ pub(crate) use table::Table;
 pub(crate) use typeset::capital;
 pub use typeset::{prose, typeset};
 
-use crate::answer::{OutputFile, picture_files};
 use crate::figure::Figure;
 use later::LaterBlocks;
 
@@ -211,11 +210,6 @@ impl Document {
     /// Appends another document.
     pub(crate) fn append(&mut self, other: Document) {
         self.blocks.extend(other.blocks);
-    }
-
-    /// The figures of the document as drawings, in order: SVG, each under its name.
-    pub fn drawings(&self) -> Vec<OutputFile> {
-        picture_files(&self.clone().into_figures())
     }
 
     /// The figures of the document, in order.

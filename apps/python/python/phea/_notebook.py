@@ -232,12 +232,16 @@ def _drawing(svg: str) -> _Figure:
 
 
 def _one_figure(files: Mapping[str, bytes]) -> dict[str, str]:
-    """The first figure that fits as SVG and as PNG."""
+    """The first figure that fits as SVG and as PNG, if need be with half of the pixels."""
     for name, data in files.items():
         picture = files.get(name.removesuffix("svg") + "png")
         if not name.endswith(".svg") or picture is None:
             continue
         svg, png = _LABELS.sub("", data.decode()), _base64(picture)
+        if len(svg.encode()) + len(png) > _FIGURE_ALONE:
+            from phea import _native
+
+            png = _base64(_native.picture_of(data, 1.0))
         if len(svg.encode()) + len(png) <= _FIGURE_ALONE:
             return {"image/svg+xml": svg, "image/png": png}
     return {}

@@ -781,7 +781,7 @@ class SizedGasAnswer(Record):
     gas_volume_m3: float
     precharge_pressure_pa: float
     pressure_ratio: float
-    stiffness_n_per_m: tuple[float, float]
+    stiffness_n_per_m: Interval
 
 
 class SizedSpringAnswer(Record):

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::plan::Plan;
 use super::row::{NoRow, Row};
 use super::workers::{MissingRuns, News, run};
-use super::{CampaignError, Effort, RowFault};
+use super::{CampaignError, Effort, RowFault, StoredSeed};
 use phea_dynamics::watch::{Progress, Watch};
 
 /// Largest number of rows that are stored at once.
@@ -178,7 +178,8 @@ fn ahead(
 /// Error for a line of another campaign, with its seed if that can be found.
 fn other_campaign(plan: &Plan, line: usize, text: &str) -> CampaignError {
     let mark = text.split(',').nth(1).unwrap_or_default();
-    CampaignError::OtherCampaign { line, seed: plan.seed(), stored_seed: plan.seed_of_mark(mark) }
+    let stored_seed = plan.seed_of_mark(mark).map_or(StoredSeed::Unknown, StoredSeed::Other);
+    CampaignError::OtherCampaign { line, seed: plan.seed(), stored_seed }
 }
 
 /// A stored row, verified to be the one that was written for that run.

@@ -120,7 +120,7 @@ pub enum IdentifyOptionError {
         /// Text as written.
         text: String,
         /// Fault of the text.
-        error: QuantityError,
+        error: Box<QuantityError>,
     },
 }
 
@@ -274,7 +274,9 @@ fn seconds(option: &'static str, text: Option<&str>) -> Result<Option<f64>, Iden
     match quantity::parse(text, &TIME) {
         Ok(value) if value > 0.0 || (value == 0.0 && option == "settling") => Ok(Some(value)),
         Ok(_) => Err(IdentifyOptionError::NotPositive { option, text: text.to_string() }),
-        Err(error) => Err(IdentifyOptionError::NoTime { option, text: text.to_string(), error }),
+        Err(error) => {
+            Err(IdentifyOptionError::NoTime { option, text: text.to_string(), error: Box::new(error) })
+        }
     }
 }
 

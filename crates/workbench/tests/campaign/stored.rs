@@ -3,7 +3,7 @@
 
 use crate::answer_schema::parsed;
 use phea_workbench::command::CampaignChunks;
-use phea_workbench::engineering::campaign::RowFault;
+use phea_workbench::engineering::campaign::{RowFault, StoredSeed};
 
 use super::*;
 
@@ -146,7 +146,7 @@ fn a_table_of_another_campaign_is_left_unchanged() {
         other => panic!("{other:?}"),
     };
     let found = refused(resumed(&loaded, &other, &mut page));
-    assert_eq!(found, CampaignError::OtherCampaign { line: 2, seed: 2, stored_seed: Some(1) });
+    assert_eq!(found, CampaignError::OtherCampaign { line: 2, seed: 2, stored_seed: StoredSeed::Other(1) });
     assert!(found.to_string().contains("was drawn with seed 1, and this campaign has seed 2"), "{found}");
     let fewer = request(3);
     assert_eq!(
@@ -155,11 +155,11 @@ fn a_table_of_another_campaign_is_left_unchanged() {
     );
     let changed = load(&[&SHORT as &[&str], &["controller.saturation=9 V"]].concat());
     let found = refused(resumed(&changed, &requested, &mut page));
-    assert_eq!(found, CampaignError::OtherCampaign { line: 2, seed: 1, stored_seed: None });
+    assert_eq!(found, CampaignError::OtherCampaign { line: 2, seed: 1, stored_seed: StoredSeed::Unknown });
     assert_eq!(page.text, before);
     let mut letter = Page { text: "Dear reader".to_string() };
     let found = refused(resumed(&loaded, &requested, &mut letter));
-    assert_eq!(found, CampaignError::OtherCampaign { line: 1, seed: 1, stored_seed: None });
+    assert_eq!(found, CampaignError::OtherCampaign { line: 1, seed: 1, stored_seed: StoredSeed::Unknown });
     assert_eq!(letter.text, "Dear reader");
 }
 
