@@ -35,41 +35,20 @@ from phea._record import Answer, Interval, Record
 '''
 
 # Definitions of the schema that are values of Python.
-VALUES = {"Number": "float", "Complex": "complex"}
-
-
-# Words by which the description of a key states that two numbers are the ends of an interval.
-OF_INTERVALS = (
-    "bounds of",
-    "ends of the band",
-    "from low to high",
-    "from the lower to the upper",
-    "interval",
-    "least and greatest",
-    "lowest and highest",
-    "smallest and largest",
-)
+VALUES = {"Number": "float", "Complex": "complex", "Interval": "Interval"}
 
 
 def reference(schema):
     return schema["$ref"].rsplit("/", 1)[1]
 
 
-def is_interval(schema, description):
-    """True for two numbers that bound an interval, by the description of the key."""
-    pair = schema.get("minItems") == schema.get("maxItems") == 2
-    numbers = schema.get("items", {}).get("$ref", "").endswith("/Number")
-    return pair and numbers and any(words in description.lower() for words in OF_INTERVALS)
-
-
-def annotation(schema, description=""):
+def annotation(schema):
     """Type of a value in Python."""
-    description = schema.get("description", description)
     if "$ref" in schema:
         name = reference(schema)
         return VALUES.get(name, name)
     if "anyOf" in schema:
-        parts = [annotation(part, description) for part in schema["anyOf"]]
+        parts = [annotation(part) for part in schema["anyOf"]]
         return " | ".join(dict.fromkeys(parts))
     if "const" in schema:
         return f"Literal[{json.dumps(schema['const'])}]"
@@ -77,9 +56,7 @@ def annotation(schema, description=""):
         return "Literal[" + ", ".join(json.dumps(word) for word in schema["enum"]) + "]"
     kind = schema["type"]
     if kind == "array":
-        if is_interval(schema, description):
-            return "Interval"
-        item = annotation(schema["items"], description)
+        item = annotation(schema["items"])
         count = schema.get("minItems")
         if count is not None and count == schema.get("maxItems"):
             return "tuple[" + ", ".join([item] * count) + "]"

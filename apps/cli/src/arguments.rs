@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use phea_workbench::answer::TableFormat;
+use phea_workbench::command::IdentifiedPart;
 
 use crate::changes::Changes;
 
@@ -330,13 +331,13 @@ pub(crate) enum SubjectWord {
 }
 
 impl SubjectWord {
-    /// Word of the command line.
-    pub(crate) fn name(self) -> &'static str {
+    /// The part that it names.
+    pub(crate) fn part(self) -> IdentifiedPart {
         match self {
-            SubjectWord::Valve => "valve",
-            SubjectWord::Response => "response",
-            SubjectWord::Line => "line",
-            SubjectWord::Friction => "friction",
+            SubjectWord::Valve => IdentifiedPart::Valve,
+            SubjectWord::Response => IdentifiedPart::Response,
+            SubjectWord::Line => IdentifiedPart::Line,
+            SubjectWord::Friction => IdentifiedPart::Friction,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The answer of a command.
 
-use phea_workbench::answer::{Answer as CommandAnswer, OutputFile, picture_of};
+use phea_workbench::answer::{Answer as CommandAnswer, OutputFile, picture_at, picture_of};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -45,6 +45,16 @@ impl FinishedAnswer {
         py.detach(|| self.answer.document.html())
     }
 
+    /// The figures that a page of the text has, by name, as SVG.
+    fn figures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let drawings = py.detach(|| self.answer.drawings());
+        let figures = PyDict::new(py);
+        for drawing in drawings {
+            figures.set_item(&drawing.name, PyBytes::new(py, &drawing.bytes))?;
+        }
+        Ok(figures)
+    }
+
     /// True if the answer is yes.
     #[getter]
     fn affirmative(&self) -> bool {
@@ -70,4 +80,14 @@ impl FinishedAnswer {
         }
         Ok(files)
     }
+}
+
+/// The PNG of a drawing, with this many pixels to a unit of the drawing.
+#[pyfunction(name = "picture_of")]
+#[pyo3(signature = (svg, scale=2.0))]
+pub(crate) fn png_of<'py>(py: Python<'py>, svg: Vec<u8>, scale: f64) -> PyResult<Bound<'py, PyBytes>> {
+    let drawn = py.detach(|| picture_at(&OutputFile::new("drawing.svg", svg), scale));
+    let picture = drawn.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    let picture = picture.ok_or_else(|| PyRuntimeError::new_err("this is no drawing"))?;
+    Ok(PyBytes::new(py, &picture.bytes))
 }

@@ -4,6 +4,7 @@
 //! give every answer its class. The interface is described in `python/phea/_native.pyi`.
 
 mod answer;
+mod bounds;
 mod chunks;
 mod columns;
 mod examples;
@@ -11,14 +12,18 @@ mod failure;
 mod linear;
 mod project;
 mod request;
+mod rig_values;
 mod several;
+mod units;
 mod watch;
 
 /// The extension module.
 #[pyo3::pymodule(gil_used = false)]
 mod _native {
     #[pymodule_export]
-    use crate::answer::FinishedAnswer;
+    use crate::answer::{FinishedAnswer, png_of};
+    #[pymodule_export]
+    use crate::bounds::templates_and_bounds;
     #[pymodule_export]
     use crate::chunks::{CampaignTable, campaign_lines};
     #[pymodule_export]
@@ -31,9 +36,12 @@ mod _native {
     use crate::linear::{PlantFamily, transfer_functions};
     #[pymodule_export]
     use crate::project::HeldProject;
-
+    #[pymodule_export]
+    use crate::rig_values::{impedance, stiffness};
     #[pymodule_export]
     use crate::several::{check_certificate, compare, identify};
+    #[pymodule_export]
+    use crate::units::unit_of;
 
     /// Version of phea.
     #[pymodule_export]

@@ -11,7 +11,7 @@ use pyo3::types::{PyDict, PyTuple};
 use crate::project::HeldProject;
 
 /// Gain, zeros, poles, dead time in s, and sample time in s or `None`.
-fn factors<'py>(py: Python<'py>, found: &Factors) -> PyResult<Bound<'py, PyTuple>> {
+pub(crate) fn factors<'py>(py: Python<'py>, found: &Factors) -> PyResult<Bound<'py, PyTuple>> {
     let roots = |pairs: &[[f64; 2]]| {
         let roots = pairs.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
         PyArray1::<Complex64>::from_vec(py, roots)

@@ -144,6 +144,11 @@ impl HeldProject {
         refused(FailureKind::NoAnswer, json, text)
     }
 
+    /// Failure of a computation of templates and bounds.
+    pub(crate) fn values_failure(&self, error: &CommandError) -> RequestFailure {
+        self.failure(&Request::Verify { proof: false, on_machine: false }, error, None)
+    }
+
     /// A project with the files that it names, and no others.
     fn of(loaded: Loaded, source: &dyn Source) -> PyResult<HeldProject> {
         let named = loaded.named_files(source).into_iter();

@@ -4,11 +4,10 @@ use phea_files::FileSystem;
 use phea_workbench::answer::Answer as CommandAnswer;
 use phea_workbench::audit::{self, CertificateError};
 use phea_workbench::command::{
-    self, FrictionRequest, IdentifyError, IdentifyRequest, LeakageModel, LineRequest, ResponseRequest,
-    ResponseSettings, compare_watched,
+    self, IdentificationRequest, IdentifiedPart, IdentifyError, IdentifyOptions, LeakageModel,
+    OptionSpelling, compare_watched,
 };
 use phea_workbench::project::LineSide;
-use phea_workbench::quantity::{self, TIME};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -60,40 +59,39 @@ pub(crate) fn identify(
     options: &Bound<'_, PyDict>,
     callable: Option<Py<PyAny>>,
 ) -> PyResult<FinishedAnswer> {
-    let options = Options(options);
-    let settings = response_settings(&options)?;
-    let valve = IdentifyRequest {
-        files: files.clone(),
-        starts: options.get("starts")?,
-        seed: options.get("seed")?.unwrap_or(1),
-        bootstrap: options.get("bootstrap")?.unwrap_or(0),
-        leakage_model: leakage_model(options.get("leakage_model")?)?,
-        figures: true,
-    };
-    let side = side(options.get("side")?)?;
+    let request = identification(of, files, &Options(options))?;
     let loaded = project.as_ref().map(|project| &project.get().loaded);
     let mut watcher = PythonWatch::new(callable);
     let answer = py.detach(|| {
         let mut watch = |progress| watcher.look(progress);
-        let source = &FileSystem;
-        match of {
-            "response" => {
-                let request = ResponseRequest { files, settings, figures: true };
-                command::response_watched(source, loaded, &request, &mut watch)
-            }
-            "line" => {
-                let request = LineRequest { files, side, settings, figures: true };
-                command::line_watched(source, loaded, &request, &mut watch)
-            }
-            "friction" => {
-                let request = FrictionRequest { files, figures: true };
-                command::friction_watched(source, loaded, &request, &mut watch)
-            }
-            _ => command::identify_watched(source, loaded, &valve, &mut watch),
-        }
+        command::identification_watched(&FileSystem, loaded, &request, &mut watch)
     });
     let hash = loaded.map(|loaded| loaded.sha256.as_str());
     finished(py, answer.map_err(|error| unidentified(&error, hash)), watcher.stopped)
+}
+
+/// The request of the options of Python.
+fn identification(
+    of: &str,
+    files: Vec<String>,
+    options: &Options<'_, '_>,
+) -> PyResult<IdentificationRequest> {
+    let part = IdentifiedPart::ALL.into_iter().find(|part| part.name() == of);
+    let options = IdentifyOptions {
+        of: part.ok_or_else(|| PyValueError::new_err(format!("no part is called `{of}`")))?,
+        files,
+        starts: options.get("starts")?,
+        seed: options.get("seed")?,
+        bootstrap: options.get("bootstrap")?,
+        leakage_model: leakage_model(options.get("leakage_model")?)?,
+        period: options.get("period")?,
+        settling: options.get("settling")?,
+        segment: options.get("segment")?,
+        coherence: options.get("coherence")?,
+        side: side(options.get("side")?)?,
+        figures: true,
+    };
+    options.request().map_err(|fault| PyValueError::new_err(fault.words(OptionSpelling::Keyword)))
 }
 
 fn unidentified(error: &IdentifyError, hash: Option<&str>) -> RequestFailure {
@@ -173,26 +171,4 @@ fn side(name: Option<String>) -> PyResult<Option<LineSide>> {
         Some("B") => Ok(Some(LineSide::B)),
         Some(other) => Err(PyValueError::new_err(format!("side is A or B, not {other}"))),
     }
-}
-
-fn response_settings(options: &Options<'_, '_>) -> PyResult<ResponseSettings> {
-    let seconds = |name: &str| -> PyResult<Option<f64>> {
-        let Some(text) = options.get::<String>(name)? else { return Ok(None) };
-        match quantity::parse(&text, &TIME) {
-            Ok(value) if value > 0.0 || (value == 0.0 && name == "settling") => Ok(Some(value)),
-            Ok(_) => Err(PyValueError::new_err(format!("{name} {text} is not a positive time"))),
-            Err(error) => Err(PyValueError::new_err(format!("{name} {text}: {error}"))),
-        }
-    };
-    let usual = ResponseSettings::default();
-    let coherence: Option<f64> = options.get("coherence")?;
-    if let Some(value) = coherence.filter(|value| !(0.0..1.0).contains(value)) {
-        return Err(PyValueError::new_err(format!("coherence {value} is not from 0 to below 1")));
-    }
-    Ok(ResponseSettings {
-        period: seconds("period")?,
-        settling: seconds("settling")?,
-        segment: seconds("segment")?,
-        coherence: coherence.unwrap_or(usual.coherence),
-    })
 }

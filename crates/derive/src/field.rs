@@ -13,6 +13,8 @@ pub(crate) struct DeclaredField {
     name: Ident,
     kind: Type,
     presence: Presence,
+    /// True if pairs of its numbers are the ends of intervals.
+    interval: bool,
 }
 
 enum Presence {
@@ -27,14 +29,15 @@ impl DeclaredField {
     pub(crate) fn of(field: &syn::Field) -> Result<DeclaredField> {
         let nameless = || Error::new(Span::call_site(), "fields need names, which are the keys");
         let name = field.ident.clone().ok_or_else(nameless)?;
-        let (mut key, mut optional, mut flat) = (None, false, false);
+        let (mut key, mut optional, mut flat, mut interval) = (None, false, false, false);
         for attribute in field.attrs.iter().filter(|attribute| attribute.path().is_ident("answer")) {
             attribute.parse_nested_meta(|meta| {
                 match meta.path.get_ident().map(Ident::to_string).as_deref() {
                     Some("optional") => optional = true,
                     Some("flatten") => flat = true,
+                    Some("interval") => interval = true,
                     Some("key") => key = Some(meta.value()?.parse::<Expr>()?),
-                    _ => return Err(meta.error("is none of `optional`, `flatten`, `key = ...`")),
+                    _ => return Err(meta.error("is none of `optional`, `flatten`, `interval`, `key = ...`")),
                 }
                 Ok(())
             })?;
@@ -53,7 +56,7 @@ impl DeclaredField {
                 Presence::Key { key, description, optional }
             }
         };
-        Ok(DeclaredField { name, kind: field.ty.clone(), presence })
+        Ok(DeclaredField { name, kind: field.ty.clone(), presence, interval })
     }
 
     /// Name of the field in Rust.
@@ -80,7 +83,7 @@ impl DeclaredField {
     /// The expression that describes its keys.
     pub(crate) fn members(&self) -> Tokens {
         let kind = &self.kind;
-        match &self.presence {
+        let members = match &self.presence {
             Presence::Flat => quote! { <#kind as crate::answer::Body>::members() },
             Presence::Key { key, description, optional: false } => quote! {
                 <#kind as crate::answer::Field>::members(
@@ -92,6 +95,11 @@ impl DeclaredField {
                     crate::answer::ObjectKey::from(#key), #description
                 ).optional()
             },
+        };
+        if self.interval {
+            quote! { #members.of_intervals() }
+        } else {
+            members
         }
     }
 }

@@ -25,6 +25,7 @@ use field::DeclaredField;
 /// - `#[answer(optional)]` on an `Option`: no key without a value, where otherwise `null` is
 ///   printed.
 /// - `#[answer(flatten)]`: the keys of the value in place of one key.
+/// - `#[answer(interval)]`: pairs of numbers are the lower and the upper end of an interval.
 /// - `#[answer(key = EXPRESSION)]`: a key other than the name of the field, as a text or as the
 ///   name of a quantity of the motion of the rig.
 #[proc_macro_derive(Answer, attributes(answer))]

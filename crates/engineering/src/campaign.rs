@@ -108,11 +108,15 @@ pub enum CampaignError {
     },
     /// The stored rows belong to another campaign.
     #[error(
-        "line {line} of the kept table is not a row of this campaign: choose another folder, or remove the table"
+        "line {line} of the kept table {stored_seed}, and this campaign has seed {seed}: choose another folder, or remove the table"
     )]
     OtherCampaign {
         /// Line number, from 1.
         line: usize,
+        /// Requested seed.
+        seed: u32,
+        /// Seed of the row.
+        stored_seed: StoredSeed,
     },
     /// A stored row has been altered.
     #[error(
@@ -135,9 +139,11 @@ pub enum CampaignError {
     },
     /// More rows are stored than requested.
     #[error(
-        "the kept table has {stored} rows, more than the {requested} that are requested: choose another folder"
+        "the kept table has {stored} rows, more than the {requested} that are requested with seed {seed}: choose another folder, or request {stored} runs or more"
     )]
     MoreStored {
+        /// Seed of the rows.
+        seed: u32,
         /// Number of rows.
         stored: u64,
         /// Number of runs.
@@ -155,6 +161,17 @@ pub enum CampaignError {
     /// A run, written as settings, is no longer a valid project.
     #[error("{0}")]
     Settings(Box<Refusal>),
+}
+
+/// Seed of a stored row that belongs to another campaign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum StoredSeed {
+    /// A campaign of this project with this seed has the row.
+    #[error("was drawn with seed {0}")]
+    Other(u32),
+    /// No campaign of this project with a small seed has it.
+    #[error("is of another project or an unknown seed")]
+    Unknown,
 }
 
 /// Fault of a line of the stored table.

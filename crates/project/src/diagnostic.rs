@@ -17,6 +17,8 @@ pub struct Diagnostic {
     pub line: usize,
     /// Column in characters, from 1; 0 for the file as a whole.
     pub column: usize,
+    /// Line and column after the last character of the place; `None` for the file as a whole.
+    pub end: Option<[usize; 2]>,
     /// Range in bytes of the file.
     pub span: Range<usize>,
     /// Expected content.

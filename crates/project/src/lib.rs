@@ -58,6 +58,7 @@ mod text;
 mod toml_text;
 mod tree;
 mod uncertainty;
+mod unit_of_key;
 mod validate;
 mod verification;
 mod written_units;
@@ -121,6 +122,7 @@ pub use simulation::*;
 pub use sizing::*;
 pub use specification::*;
 pub use uncertainty::*;
+pub use unit_of_key::unit_of_key;
 pub use verification::*;
 
 pub(crate) use input_signal::InputUnit;

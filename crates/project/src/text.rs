@@ -213,19 +213,26 @@ impl NamedText {
         std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect()
     }
 
+    /// Line and column of a byte, in characters from 1.
+    fn line_and_column(&self, at: usize, line_starts: &[usize]) -> [usize; 2] {
+        let line = line_of(line_starts, at);
+        let line_start = line.checked_sub(1).and_then(|index| line_starts.get(index)).copied().unwrap_or(0);
+        let before = self.content.get(line_start..at).unwrap_or_default();
+        [line, before.chars().count() + 1]
+    }
+
     fn diagnostic(&self, found: &RawFinding, line_starts: &[usize]) -> Diagnostic {
         let end = self.content.len();
         let (from, to) = (found.place.start.min(end), found.place.end.min(end));
-        let line = line_of(line_starts, from);
-        let line_start = line.checked_sub(1).and_then(|index| line_starts.get(index)).copied().unwrap_or(0);
         let whole_file = self.content.is_empty();
-        let before = self.content.get(line_start..from).unwrap_or_default();
+        let [line, column] = self.line_and_column(from, line_starts);
         Diagnostic {
             severity: found.severity,
             message: found.message.clone(),
             file: self.name.clone(),
             line: if whole_file { 0 } else { line },
-            column: if whole_file { 0 } else { before.chars().count() + 1 },
+            column: if whole_file { 0 } else { column },
+            end: (!whole_file).then(|| self.line_and_column(to.max(from), line_starts)),
             span: from + self.skipped..to.max(from) + self.skipped,
             expected: found.expected.clone(),
             help: found.help.clone(),

@@ -75,6 +75,17 @@ pub struct Dimension {
 }
 
 impl Dimension {
+    /// SI unit in this grammar; empty for a pure number.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_quantity::{FLOW, RATIO};
+    /// assert_eq!([FLOW.si_unit(), RATIO.si_unit()], ["m3/s", ""]);
+    /// ```
+    pub fn si_unit(&self) -> &'static str {
+        if self.si == "1" { "" } else { self.si }
+    }
+
     /// Ending of names of quantities in SI: of a key of JSON, or of a column of a table.
     ///
     /// # Example

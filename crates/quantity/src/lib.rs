@@ -20,6 +20,7 @@ mod shortest;
 mod significant;
 pub mod spelling;
 mod unit;
+mod unit_of_name;
 mod units;
 
 pub use celsius::ZERO_CELSIUS;
@@ -35,4 +36,5 @@ pub use print::{display, fitting, print};
 pub use quantity_name::QuantityName;
 pub use scale::UnitScale;
 pub use significant::significant;
+pub use unit_of_name::unit_of_name;
 pub use units::Units;

@@ -33,7 +33,7 @@ pub(crate) use known::{Entries, KeyList, Keyed, OrReason, Reasoned};
 pub(crate) use object::{Json, ObjectKey};
 pub(crate) use phea_derive::Answer;
 pub(crate) use pictures::picture_files;
-pub use pictures::picture_of;
+pub use pictures::{picture_at, picture_of};
 pub(crate) use recorded::{RecordedAnswer, body_in_use, unchanged_because};
 pub(crate) use schema::{CommandAnswer, schema_of};
 pub(crate) use shape::{EitherShape, Members, ObjectShape, ValueShape, WordList};
@@ -57,6 +57,11 @@ impl Answer {
     /// The document as text for a terminal.
     pub fn text(&self) -> String {
         self.document.text()
+    }
+
+    /// The figures that a page of the text has, in order: SVG, each under its name.
+    pub fn drawings(&self) -> Vec<OutputFile> {
+        picture_files(&self.document.clone().into_figures())
     }
 }
 

@@ -5,6 +5,7 @@ mod answers;
 mod campaign;
 mod check;
 mod friction;
+mod identification;
 mod identify;
 mod impossible;
 mod line_test;
@@ -22,6 +23,10 @@ pub use crate::error::CommandError;
 pub use alternatives::AlternativesRequest;
 pub use campaign::{CampaignChunks, CampaignRequest, CampaignRuns, campaign_watched};
 pub use friction::{FrictionRequest, friction_watched};
+pub use identification::{
+    IdentificationRequest, IdentifiedPart, IdentifyOptionError, IdentifyOptions, OptionSpelling,
+    identification_watched,
+};
 pub use identify::{IdentifyRequest, identify_watched};
 pub use line_test::{LineRequest, line_watched};
 pub use output_names::OutputNames;
@@ -321,12 +326,12 @@ fn size_answer(
     let problem = sizing_problem(&setup, &catalogue)?;
     let sizing = size(&problem, question);
     let units = &loaded.project.units;
-    Ok(Unprinted {
-        document: sizing::document(&sizing, vec![], units),
-        body: sizing::body(&sizing, units).into_object(),
-        files: sizing::files(&sizing),
-        affirmative: sizing.best().is_some_and(Candidate::accepted),
-    })
+    let mut document = sizing::document(&sizing, vec![], units);
+    let body = sizing::body(&sizing, units).into_object();
+    let files = sizing::files(&sizing);
+    let affirmative = sizing.best().is_some_and(Candidate::accepted);
+    document.later(move || report::of_sizing(&problem, &sizing));
+    Ok(Unprinted { document, body, files, affirmative })
 }
 
 fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Unprinted, CommandError> {
@@ -363,15 +368,14 @@ fn design_answer(
         true => design::stage_files(loaded, &mut view, &mut within(watch, [0.9, 1.0]))?,
         false => design::files(loaded, &view),
     };
-    Ok(Unprinted {
-        document: design::output(loaded, &view)?,
-        body: design::body(&view)?.into_object(),
-        files,
-        affirmative: view.is_met()
-            && !view.is_stopped()
-            && view.agreement() != Agreement::Contradicts
-            && view.trial.as_ref().and_then(Trial::satisfies) != Some(false),
-    })
+    let mut document = design::output(loaded, &view)?;
+    let body = design::body(&view)?.into_object();
+    let affirmative = view.is_met()
+        && !view.is_stopped()
+        && view.agreement() != Agreement::Contradicts
+        && view.trial.as_ref().and_then(Trial::satisfies) != Some(false);
+    document.later(move || report::of_design(&view));
+    Ok(Unprinted { document, body, files, affirmative })
 }
 
 /// Compares identical scenarios of several projects, with `figures` as files, and reports progress.

@@ -2,6 +2,7 @@
 //! procedure builds the tree; the terminal and the page print it.
 
 mod cell;
+mod later;
 mod number;
 mod page;
 mod table;
@@ -16,6 +17,7 @@ pub(crate) use typeset::capital;
 pub use typeset::{prose, typeset};
 
 use crate::figure::Figure;
+use later::LaterBlocks;
 
 /// Blocks in the order in which they are read.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -65,6 +67,8 @@ enum Block {
     SideBySide(Document),
     /// Lines that are printed unchanged.
     Preformatted(String),
+    /// Blocks of the page that are made when it is.
+    Later(LaterBlocks),
 }
 
 impl Document {
@@ -198,6 +202,11 @@ impl Document {
         self.blocks.push(Block::Preformatted(text.into()));
     }
 
+    /// Blocks of the page that are made when it is; a terminal leaves them out.
+    pub(crate) fn later(&mut self, make: impl FnOnce() -> Document + Send + 'static) {
+        self.blocks.push(Block::Later(LaterBlocks::new(make)));
+    }
+
     /// Appends another document.
     pub(crate) fn append(&mut self, other: Document) {
         self.blocks.extend(other.blocks);
@@ -208,6 +217,7 @@ impl Document {
         let figures = self.blocks.into_iter().flat_map(|block| match block {
             Block::Figure(figure) => vec![*figure],
             Block::SideBySide(document) => document.into_figures(),
+            Block::Later(later) => later.blocks().clone().into_figures(),
             _ => vec![],
         });
         figures.collect()

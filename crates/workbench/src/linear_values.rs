@@ -33,7 +33,7 @@ pub struct Factors {
 }
 
 impl Factors {
-    fn of(function: &TransferFunction) -> Factors {
+    pub(crate) fn of(function: &TransferFunction) -> Factors {
         let pairs = |roots: &[num_complex::Complex64]| roots.iter().map(|root| [root.re, root.im]).collect();
         Factors {
             gain: function.gain(),

@@ -17,6 +17,7 @@ mod impedance;
 mod judged;
 mod load_motion;
 mod models;
+mod of_answers;
 mod opening;
 mod page;
 mod proven;
@@ -33,7 +34,9 @@ mod test_bench;
 
 pub(crate) use answer::{ReportAnswer, body};
 pub use campaign::runs_within_budget;
+pub(crate) use of_answers::{of_audit, of_design, of_models, of_sizing};
 pub use opening::{DecidedAnswer, DecisionAnswer};
+pub(crate) use stiffness::positions;
 
 use phea_dynamics::watch::{Watch, within};
 use phea_engineering::alternatives::Alternatives;

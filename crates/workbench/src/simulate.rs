@@ -2,6 +2,7 @@
 
 mod answer;
 mod check;
+mod compared;
 mod document;
 mod exceeded;
 mod figures;

@@ -1,6 +1,6 @@
 """The extension of the package."""
 
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ class Answer:
     @property
     def stopped(self) -> BaseException | bool | None: ...
     def html(self) -> str: ...
+    def figures(self) -> dict[str, bytes]: ...
     def files(self) -> dict[str, bytes]: ...
 
 @final
@@ -47,6 +48,41 @@ class Project:
     def files(self) -> dict[str, bytes]: ...
     def answer(self, name: str, options: dict[str, Any], callable: object = None) -> Answer: ...
 
+_Factors: TypeAlias = tuple[
+    float, NDArray[np.complex128], NDArray[np.complex128], float, float | None
+]
+_Gains: TypeAlias = tuple[
+    NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]
+]
+_Curve: TypeAlias = tuple[str, NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+_Port: TypeAlias = tuple[_Factors, NDArray[np.complex128]]
+
+def unit_of(name: str) -> str: ...
+def picture_of(svg: bytes, scale: float = 2.0) -> bytes: ...
+def stiffness(
+    project: Project,
+) -> (
+    tuple[bool, NDArray[np.float64], _Curve, _Curve, list[float], list[float], float] | None
+): ...
+def impedance(
+    project: Project,
+) -> tuple[bool, NDArray[np.float64], _Port, _Port | None] | None: ...
+def templates_and_bounds(
+    project: Project, callable: object = None
+) -> tuple[
+    list[str],
+    int,
+    list[
+        tuple[
+            float,
+            NDArray[np.float64],
+            NDArray[np.complex128],
+            complex | None,
+            list[tuple[int | None, str, _Gains]],
+            _Gains,
+        ]
+    ],
+]: ...
 def examples() -> dict[str, bytes]: ...
 def columns(text: bytes) -> dict[str, NDArray[np.float64] | list[str]]: ...
 def compare(projects: list[Project], callable: object = None) -> Answer: ...

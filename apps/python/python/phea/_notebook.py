@@ -162,9 +162,13 @@ def _html(value: Shown, limit: int) -> str:
         return _project(value, limit)
     if not isinstance(value, Answer):
         raise TypeError(f"a project or an answer is shown, not {value!r}")
+    drawn = _figures(value.figures)
+    named = {figure.title: figure for figure in drawn}
     parts = _parts(_document(value))
     placed = {part.title for part in parts if isinstance(part, _Figure)}
-    below: list[Part] = [figure for figure in _figures(value.figures) if figure.title not in placed]
+    # in its place, a figure has the smaller of its formats too
+    parts = [named.get(part.title, part) if isinstance(part, _Figure) else part for part in parts]
+    below: list[Part] = [figure for figure in drawn if figure.title not in placed]
     parts += ['<div class="figures">', *below, "</div>"] if below else []
     if _size(parts) > limit:
         figures: list[Part] = [part for part in parts if isinstance(part, _Figure)]
@@ -228,12 +232,16 @@ def _drawing(svg: str) -> _Figure:
 
 
 def _one_figure(files: Mapping[str, bytes]) -> dict[str, str]:
-    """The first figure that fits as SVG and as PNG."""
+    """The first figure that fits as SVG and as PNG, if need be with half of the pixels."""
     for name, data in files.items():
         picture = files.get(name.removesuffix("svg") + "png")
         if not name.endswith(".svg") or picture is None:
             continue
         svg, png = _LABELS.sub("", data.decode()), _base64(picture)
+        if len(svg.encode()) + len(png) > _FIGURE_ALONE:
+            from phea import _native
+
+            png = _base64(_native.picture_of(data, 1.0))
         if len(svg.encode()) + len(png) <= _FIGURE_ALONE:
             return {"image/svg+xml": svg, "image/png": png}
     return {}

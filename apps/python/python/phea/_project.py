@@ -23,7 +23,9 @@ if TYPE_CHECKING:
     from phea._commands import Progress as Progress
     from phea._native import Project as NativeProject
     from phea._texts import PathLike, Value
+    from phea.bounds import Bounds, Templates
     from phea.linear import Family, Linear
+    from phea.rig import Impedance, Stiffness
     from phea.shaping import Shaping
 
 
@@ -132,6 +134,34 @@ class Project(Commands, Shown):
         from phea.linear import Family
 
         return Family(self)
+
+    @property
+    def templates(self) -> Templates:
+        """Responses of the plants at the design frequencies; computed anew at each use."""
+        from phea.bounds import Templates
+
+        return Templates.of(self)
+
+    @property
+    def bounds(self) -> Bounds:
+        """Bounds of the nominal loop at the design frequencies; computed anew at each use."""
+        from phea.bounds import Bounds
+
+        return Bounds.of(self)
+
+    @property
+    def stiffness(self) -> Stiffness | None:
+        """Hydraulic stiffness over the stroke; ``None`` without a rig."""
+        from phea.rig import Stiffness
+
+        return Stiffness.of(self)
+
+    @property
+    def impedance(self) -> Impedance | None:
+        """Driving-point impedance of the rig; ``None`` without a rig."""
+        from phea.rig import Impedance
+
+        return Impedance.of(self)
 
     def shaping(self, *, prefilter: bool = False) -> Shaping:
         """Shapes the controller, or the prefilter, by hand: `phea shape`."""

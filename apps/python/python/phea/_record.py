@@ -133,13 +133,15 @@ class Answer(Shown, Record):
     ``bool(answer)`` is the yes or no of the command, which ends with status 1 for a no.
     """
 
-    __slots__ = ("_context", "_files", "_native", "_state")
+    __slots__ = ("_context", "_drawn", "_files", "_native", "_state")
 
     # What a class of `phea.results` needs besides: the project, or the path of a table.
     _context: Any
     _native: NativeAnswer | None
     _state: tuple[str, str, bool]
     _files: dict[str, bytes] | None
+    # Drawings of the page that are not among the files, as SVG.
+    _drawn: dict[str, bytes] | None
 
     def __init__(
         self,
@@ -147,8 +149,10 @@ class Answer(Shown, Record):
         files: dict[str, bytes] | None = None,
         native: NativeAnswer | None = None,
         context: Any = None,
+        drawn: dict[str, bytes] | None = None,
     ) -> None:
         object.__setattr__(self, "_context", context)
+        object.__setattr__(self, "_drawn", drawn)
         object.__setattr__(self, "_state", state)
         object.__setattr__(self, "_files", files)
         object.__setattr__(self, "_native", native)
@@ -202,8 +206,22 @@ class Answer(Shown, Record):
 
     @property
     def figures(self) -> dict[str, bytes]:
-        """The drawings among the files, by name: SVG and PNG."""
-        return {name: data for name, data in self.files.items() if name.endswith((".svg", ".png"))}
+        """The drawings, by name, SVG and PNG: those among the files, and those of a page."""
+        from phea import _native
+
+        figures = {name: one for name, one in self.files.items() if name.endswith((".svg", ".png"))}
+        for name, drawing in self._drawings().items():
+            figures[name] = drawing
+            figures[name.removesuffix("svg") + "png"] = _native.picture_of(drawing)
+        return figures
+
+    def _drawings(self) -> dict[str, bytes]:
+        if self._drawn is None:
+            draw = getattr(self._native, "figures", dict)
+            found: dict[str, bytes] = draw()
+            others = {name: one for name, one in found.items() if name not in self.files}
+            object.__setattr__(self, "_drawn", others)
+        return self._drawn or {}
 
     @property
     def tables(self) -> dict[str, Table]:
@@ -225,4 +243,5 @@ class Answer(Shown, Record):
         return hash((type(self), self._state))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (type(self), (self._state, self.files, None, self._context))
+        state = (self._state, self.files, None, self._context, self._drawings())
+        return (type(self), state)

@@ -517,7 +517,7 @@ class SizeAnswer(Answer):
     maximum_flow_limit: FlowLimit
     valve_flow_m3_per_s: float
     pump_flow_m3_per_s: float | None
-    bore_range_m: tuple[float, float]
+    bore_range_m: Interval
     pole_gain_v_per_n: float
     load: SizedLoad
     load_stiffness_n_per_m: float | None
@@ -781,7 +781,7 @@ class SizedGasAnswer(Record):
     gas_volume_m3: float
     precharge_pressure_pa: float
     pressure_ratio: float
-    stiffness_n_per_m: tuple[float, float]
+    stiffness_n_per_m: Interval
 
 
 class SizedSpringAnswer(Record):
@@ -3119,9 +3119,9 @@ class StructurePartAnswer(Record):
     """
 
     kind: StructureFactor
-    frequency_rad_per_s: tuple[float, float] | None
-    damping_ratio: tuple[float, float] | None
-    depth: tuple[float, float] | None
+    frequency_rad_per_s: Interval | None
+    damping_ratio: Interval | None
+    depth: Interval | None
 
 
 StructureFactor: TypeAlias = Literal["integrator", "fixed", "zero", "pole", "zero_pair", "pole_pair", "notch"]
@@ -4995,12 +4995,15 @@ class VariedRangeAnswer(Record):
         Lower end in SI, of a normal distribution two standard deviations below the middle.
     maximum
         Upper end in SI, of a normal distribution two standard deviations above the middle.
+    unit
+        SI unit of the number; empty for a pure number.
     """
 
     path: str
     distribution: Distribution
     minimum: float
     maximum: float
+    unit: str
 
 
 Distribution: TypeAlias = Literal["uniform", "normal", "log_uniform", "triangular"]
@@ -6700,6 +6703,8 @@ class DiagnosticAnswer(Record):
         Line in the file, from 1; null if none is concerned.
     column
         Column in the line, from 1; null if none is concerned.
+    end
+        Line and column after the last character of the place; null if none is concerned.
     expected
         Expected value, if it can be named.
     help
@@ -6711,6 +6716,7 @@ class DiagnosticAnswer(Record):
     file: str | None
     line: int | None
     column: int | None
+    end: tuple[int, int] | None
     expected: str | None
     help: str | None
 

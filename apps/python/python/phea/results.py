@@ -172,10 +172,11 @@ class Campaign(CampaignAnswer):
         """The rows, one for each run; with ``out``, as the table has them now."""
         from phea.table import Table
 
+        units = {one.path: one.unit for one in self.parameters}
         if self._context is None:
-            return Table(self.files["runs.csv"])
+            return Table(self.files["runs.csv"], units)
         with open(self._context, "rb") as table:
-            return Table(table.read())
+            return Table(table.read(), units)
 
     def to_pandas(self) -> pd.DataFrame:
         """The rows as a pandas frame with their units in ``attrs``."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -31,10 +30,11 @@ class Table(Mapping[str, Any]):
     (['time_s', 'force_n'], 3.5)
     """
 
-    __slots__ = ("_columns", "_csv")
+    __slots__ = ("_columns", "_csv", "_units")
 
-    def __init__(self, csv: bytes) -> None:
+    def __init__(self, csv: bytes, units: Mapping[str, str] | None = None) -> None:
         self._csv = csv
+        self._units = dict(units or {})
         self._columns: dict[str, Any] | None = None
 
     def _all(self) -> dict[str, Any]:
@@ -82,7 +82,7 @@ class Table(Mapping[str, Any]):
         return hash(self._csv)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (Table, (self._csv,))
+        return (Table, (self._csv, self._units))
 
     def __repr__(self) -> str:
         columns = self._all()
@@ -90,11 +90,15 @@ class Table(Mapping[str, Any]):
         names = [*list(columns)[:_SHOWN], "..."] if len(columns) > _SHOWN else list(columns)
         return f"Table({rows} rows, {len(columns)} columns: {', '.join(names)})"
 
+    def unit_of(self, name: str) -> str:
+        """Unit of a column; empty for a number without a unit."""
+        return self._units.get(name) or unit_of(name)
+
     def to_pandas(self) -> pd.DataFrame:
         """The table as a pandas frame; ``attrs["units"]`` has the unit of each column."""
         pandas = imported("pandas", "pandas")
         frame: pd.DataFrame = pandas.DataFrame(dict(self._all()))
-        frame.attrs["units"] = {name: unit_of(name) for name in self}
+        frame.attrs["units"] = {name: self.unit_of(name) for name in self}
         return frame
 
     def to_arrow(self) -> pa.Table:
@@ -102,7 +106,7 @@ class Table(Mapping[str, Any]):
         arrow = imported("pyarrow", "pandas")
         columns = {name: arrow.array(column) for name, column in self._all().items()}
         fields = [
-            arrow.field(name, column.type, metadata={"unit": unit_of(name)})
+            arrow.field(name, column.type, metadata={"unit": self.unit_of(name)})
             for name, column in columns.items()
         ]
         table: pa.Table = arrow.table(list(columns.values()), schema=arrow.schema(fields))
@@ -113,59 +117,15 @@ class Table(Mapping[str, Any]):
         return self.to_arrow().__arrow_c_stream__(requested_schema)
 
 
-# Ends of names, the longest first, with their units.
-_UNITS = {
-    "n_m_s_per_rad": "N.m.s/rad",
-    "n_m_per_rad": "N.m/rad",
-    "n_s_per_m": "N.s/m",
-    "m3_per_s_pa": "m3/(s.Pa)",
-    "m3_per_s_v": "m3/(s.V)",
-    "l_per_min": "L/min",
-    "m3_per_pa": "m3/Pa",
-    "rad_per_s": "rad/s",
-    "v_per_n_m": "V/(N.m)",
-    "kg_per_m3": "kg/m3",
-    "n_per_m": "N/m",
-    "m3_per_s": "m3/s",
-    "v_per_n": "V/N",
-    "m_per_s": "m/s",
-    "pa_per_v": "Pa/V",
-    "per_s": "1/s",
-    "kg_m2": "kg.m2",
-    "n_m": "N.m",
-    "percent": "%",
-    "degc": "degC",
-    "degC": "degC",
-    "bar": "bar",
-    "deg": "deg",
-    "rad": "rad",
-    "db": "dB",
-    "hz": "Hz",
-    "kg": "kg",
-    "m2": "m2",
-    "m3": "m3",
-    "pa": "Pa",
-    "j": "J",
-    "k": "K",
-    "m": "m",
-    "n": "N",
-    "s": "s",
-    "v": "V",
-    "w": "W",
-}
-
-
-# Place in time at the end of a name, such as that of `force_n_at_2.5_s`.
-_AT_A_TIME = re.compile(r"_at_[-+.\de]+_s$")
-
-
 def unit_of(name: str) -> str:
-    """Unit of a column, by the end of its name; empty for a number without a unit.
+    """Unit of a column; empty for a number without a unit.
+
+    The end of a name is its unit; a path of the project file has the unit of its key, in a rig with
+    a cylinder.
 
     Examples
     --------
-    >>> unit_of("pressure_a_pa"), unit_of("run")
-    ('Pa', '')
+    >>> unit_of("pressure_a_pa"), unit_of("run"), unit_of("supply.pressure")
+    ('Pa', '', 'Pa')
     """
-    quantity = _AT_A_TIME.sub("", name)
-    return next((unit for end, unit in _UNITS.items() if quantity.endswith("_" + end)), "")
+    return _native.unit_of(name)

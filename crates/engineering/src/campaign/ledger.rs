@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::plan::Plan;
 use super::row::{NoRow, Row};
 use super::workers::{MissingRuns, News, run};
-use super::{CampaignError, Effort, RowFault};
+use super::{CampaignError, Effort, RowFault, StoredSeed};
 use phea_dynamics::watch::{Progress, Watch};
 
 /// Largest number of rows that are stored at once.
@@ -175,10 +175,17 @@ fn ahead(
     Ok(rows.filter(ours).map(|row| (row.run, row)).collect())
 }
 
+/// Error for a line of another campaign, with its seed if that can be found.
+fn other_campaign(plan: &Plan, line: usize, text: &str) -> CampaignError {
+    let mark = text.split(',').nth(1).unwrap_or_default();
+    let stored_seed = plan.seed_of_mark(mark).map_or(StoredSeed::Unknown, StoredSeed::Other);
+    CampaignError::OtherCampaign { line, seed: plan.seed(), stored_seed }
+}
+
 /// A stored row, verified to be the one that was written for that run.
 fn kept_row(plan: &Plan, run: u64, text: &str, line: usize) -> Result<Row, CampaignError> {
     let row = plan.columns.row(text).map_err(|fault| match fault {
-        NoRow::Other => CampaignError::OtherCampaign { line },
+        NoRow::Other => other_campaign(plan, line, text),
         NoRow::LineEnd => CampaignError::LineEnds { line },
         NoRow::Changed => CampaignError::Damaged { line, fault: RowFault::Changed },
     })?;
@@ -203,7 +210,7 @@ fn resumed(plan: &Plan, requested: u64, ledger: &mut dyn RowStore) -> Result<Vec
     {
         return Err(match first.strip_suffix('\r') == Some(header.trim_end()) {
             true => CampaignError::LineEnds { line },
-            false => CampaignError::OtherCampaign { line },
+            false => other_campaign(plan, line, first),
         });
     }
     for (text, line) in lines {
@@ -212,10 +219,10 @@ fn resumed(plan: &Plan, requested: u64, ledger: &mut dyn RowStore) -> Result<Vec
     let stored = rows.len() as u64;
     let beginning = if whole.is_empty() { header.clone() } else { plan.columns.beginning(stored) };
     if !(torn.starts_with(&beginning) || beginning.starts_with(torn)) {
-        return Err(CampaignError::OtherCampaign { line: whole.lines().count() + 1 });
+        return Err(other_campaign(plan, whole.lines().count() + 1, torn));
     }
     if stored > requested {
-        return Err(CampaignError::MoreStored { stored, requested });
+        return Err(CampaignError::MoreStored { seed: plan.seed(), stored, requested });
     }
     if !torn.is_empty() {
         ledger.cut(whole.len()).map_err(CampaignError::RowStore)?;

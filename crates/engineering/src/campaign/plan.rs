@@ -29,6 +29,8 @@ const BAND_TIMES: usize = 125;
 const EVENT_S: f64 = 0.5;
 /// Number of letters of the mark that identifies the rows of a campaign.
 const MARK_LENGTH: usize = 16;
+/// Number of seeds, from 0, that are compared with the mark of a row of another campaign.
+const COMPARED_SEEDS: u32 = 1000;
 /// Range of the seeds of the measurement noise of a sampled controller, which are drawn too.
 const SEEDS: f64 = 4e9;
 
@@ -79,6 +81,7 @@ pub struct Plan {
     pub(super) requirements: Vec<TimeRequirement>,
     ranges: Vec<VariedRange>,
     seed: u32,
+    marks: Marks,
 }
 
 /// The drawn numbers of a run.
@@ -156,8 +159,9 @@ impl Plan {
         let reference_n = times_s.iter().map(|time_s| driven.reference.value(*time_s)).collect();
         let windows = driven.windows.clone();
         let band_samples = band_samples(&times_s, &windows);
+        let marks = Marks::new(source, &project, &scenario);
         let columns = CampaignColumns {
-            mark: mark(source, &project, &scenario, seed),
+            mark: marks.of_seed(seed),
             paths: ranges.iter().map(|range| range.path.clone()).collect(),
             times_s: band_samples
                 .iter()
@@ -185,6 +189,7 @@ impl Plan {
             look,
             ranges,
             seed,
+            marks,
         })
     }
 
@@ -232,6 +237,11 @@ impl Plan {
     /// Seed of the random numbers.
     pub fn seed(&self) -> u32 {
         self.seed
+    }
+
+    /// Seed with which this campaign has these marks, if it is one of the first.
+    pub(super) fn seed_of_mark(&self, mark: &str) -> Option<u32> {
+        (0..COMPARED_SEEDS).find(|seed| self.marks.of_seed(*seed) == mark)
     }
 
     /// Bounds of an uncertain parameter of the linear model, if the project states them.
@@ -392,13 +402,37 @@ fn plain(time_s: f64) -> f64 {
 /// Tables of the project that may be written as arrays.
 const EDGES: [&str; 2] = ["valve.flow_coefficients", "valve.leakage_coefficients"];
 
-/// Mark of everything that determines the rows: project with settings and catalogue, the files it
+/// Marks of everything that determines the rows: project with settings and catalogue, the files it
 /// names, seed, and version.
-fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) -> String {
-    let mut hash = Sha256::new();
-    hash.update(print(project));
-    hash.update(env!("CARGO_PKG_VERSION"));
-    hash.update(seed.to_le_bytes());
+#[derive(Clone, Debug)]
+struct Marks {
+    /// Hash of what precedes the seed.
+    before: Sha256,
+    /// Bytes of the files.
+    files: Vec<Vec<u8>>,
+}
+
+impl Marks {
+    fn new(source: &dyn Source, project: &Project, scenario: &Scenario) -> Marks {
+        let mut before = Sha256::new();
+        before.update(print(project));
+        before.update(env!("CARGO_PKG_VERSION"));
+        let files = files_of(scenario).map(|name| project.path_of(name));
+        Marks { before, files: files.filter_map(|path| source.read(&path).ok()).collect() }
+    }
+
+    /// Mark of the rows with this seed.
+    fn of_seed(&self, seed: u32) -> String {
+        let mut hash = self.before.clone();
+        hash.update(seed.to_le_bytes());
+        self.files.iter().for_each(|bytes| hash.update(bytes));
+        let text: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        text.chars().take(MARK_LENGTH).collect()
+    }
+}
+
+/// Files that a scenario names: of the motion, the signals and the start.
+fn files_of(scenario: &Scenario) -> impl Iterator<Item = &String> {
     let motion = scenario.load_motion.iter().filter_map(|motion| match &motion.shape {
         MotionShape::File { file } => Some(file),
         _ => None,
@@ -409,12 +443,7 @@ fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) 
         InputSignal::File { file, .. } => Some(file),
         _ => None,
     });
-    let signals = signals.chain(scenario.start.iter().filter_map(|start| start.file.as_ref()));
-    for bytes in motion.chain(signals).filter_map(|name| source.read(&project.path_of(name)).ok()) {
-        hash.update(bytes);
-    }
-    let text: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-    text.chars().take(MARK_LENGTH).collect()
+    motion.chain(signals).chain(scenario.start.iter().filter_map(|start| start.file.as_ref()))
 }
 
 /// Indices of the states on which force, command and limits of lines depend: only these are

@@ -58,6 +58,11 @@ impl VariedRange {
         quantity::fitting(self.minimum.abs().max(self.maximum.abs()), self.key.dimension)
     }
 
+    /// Unit of its numbers in SI; empty for a pure number.
+    pub fn si_unit(&self) -> &'static str {
+        self.key.dimension.si_unit()
+    }
+
     /// Word of the distribution, as in a project file.
     pub fn distribution_word(&self) -> &'static str {
         word_of(&DISTRIBUTIONS, &self.distribution)

@@ -27,10 +27,18 @@ pub(crate) fn picture_files(figures: &[Figure]) -> Vec<OutputFile> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn picture_of(file: &OutputFile) -> Result<Option<OutputFile>, FigureError> {
+    picture_at(file, PNG_SCALE)
+}
+
+/// The PNG of a drawing with this many pixels to a unit of its view box, as [`picture_of`].
+///
+/// # Errors
+/// As [`picture_of`].
+pub fn picture_at(file: &OutputFile, scale: f64) -> Result<Option<OutputFile>, FigureError> {
     let drawing = file.name.strip_suffix(".svg").zip(std::str::from_utf8(&file.bytes).ok());
     let Some((name, svg)) = drawing else { return Ok(None) };
     let Some([width, height]) = view_box(svg) else { return Ok(None) };
-    Ok(Some(OutputFile::new(format!("{name}.png"), png::render(svg, width, height, PNG_SCALE)?)))
+    Ok(Some(OutputFile::new(format!("{name}.png"), png::render(svg, width, height, scale)?)))
 }
 
 /// Width and height of a drawing.

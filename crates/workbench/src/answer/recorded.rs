@@ -45,6 +45,7 @@ struct IdentifiedValueAnswer {
     /// SI unit of the values.
     unit: &'static str,
     /// Confidence interval of 95 %, from low to high.
+    #[answer(interval)]
     confidence_95: [f64; 2],
     /// Value of the project file; null if it has none.
     declared: Option<f64>,

@@ -142,6 +142,7 @@ impl Definitions {
             ValueShape::Text => kind("string"),
             ValueShape::Number => self.known("Number", number),
             ValueShape::Complex => self.known("Complex", complex),
+            ValueShape::Interval => self.known("Interval", interval),
             ValueShape::Plant => self.known("Plant", plant),
             ValueShape::Words(list) => self.words(list),
             ValueShape::List(item) => kind("array").with("items", self.schema(item)),
@@ -226,6 +227,14 @@ fn complex(all: &mut Definitions) -> Object {
         .with("type", "array")
         .with("items", all.schema(&ValueShape::Number));
     sized(parts, 2)
+}
+
+fn interval(all: &mut Definitions) -> Object {
+    let ends = Object::new()
+        .with("description", "Lower and upper end of an interval.")
+        .with("type", "array")
+        .with("items", all.schema(&ValueShape::Number));
+    sized(ends, 2)
 }
 
 fn plant(all: &mut Definitions) -> Object {

@@ -20,6 +20,8 @@ pub(crate) enum ValueShape {
     List(Box<ValueShape>),
     /// List of a known number of values.
     Array(Box<ValueShape>, usize),
+    /// Lower and upper end of an interval, both numbers.
+    Interval,
     /// List of values that differ in kind.
     Tuple(Vec<ValueShape>),
     /// Object whose keys are names, each with such a value.
@@ -27,6 +29,21 @@ pub(crate) enum ValueShape {
     Nullable(Box<ValueShape>),
     Either(EitherShape),
     Object(ObjectShape),
+}
+
+impl ValueShape {
+    /// With intervals in place of pairs of numbers.
+    fn of_intervals(self) -> ValueShape {
+        let within = |value: Box<ValueShape>| Box::new(value.of_intervals());
+        match self {
+            ValueShape::Array(item, 2) if matches!(*item, ValueShape::Number) => ValueShape::Interval,
+            ValueShape::Array(item, count) => ValueShape::Array(within(item), count),
+            ValueShape::List(item) => ValueShape::List(within(item)),
+            ValueShape::Map(value) => ValueShape::Map(within(value)),
+            ValueShape::Nullable(value) => ValueShape::Nullable(within(value)),
+            other => other,
+        }
+    }
 }
 
 /// The words of an enumeration.
@@ -89,6 +106,14 @@ impl Members {
     pub(crate) fn optional(mut self) -> Members {
         self.list.iter_mut().for_each(|member| member.required = false);
         self.choices.clear();
+        self
+    }
+
+    /// With intervals in place of the pairs of numbers in the values.
+    pub(crate) fn of_intervals(mut self) -> Members {
+        for member in &mut self.list {
+            member.shape = member.shape.clone().of_intervals();
+        }
         self
     }
 

@@ -16,6 +16,7 @@ use crate::answer::{Answer, Body, Csv, OrReason, OutputFile, envelope};
 use crate::caveat;
 use crate::project::Loaded;
 use crate::quantity::{LENGTH, QuantityName};
+use crate::specification::number_cell;
 use noise::{PressureNoiseAnswer, VelocityNoiseAnswer, pressure_noise, velocity_noise};
 use specification::{AuditedSpecification, in_file_order};
 use stability::{AuditProofAnswer, StabilityAnswer, proof, stability};
@@ -185,8 +186,9 @@ pub(crate) fn body(view: &ProjectAudit) -> AuditAnswer {
 pub fn files(view: &ProjectAudit) -> Vec<OutputFile> {
     let mut csv = Csv::new("specification,kind,frequency_rad_per_s,worst_margin_db");
     for (index, finding) in view.audit.specifications.iter().enumerate() {
+        let number = number_cell(view.number_of(index));
         for (frequency, margin) in &finding.envelope {
-            csv.row(&[&index, &kind_key(&finding.requirement), frequency, margin]);
+            csv.row(&[&number, &kind_key(&finding.requirement), frequency, margin]);
         }
     }
     vec![OutputFile::new("margins.csv", csv.text())]

@@ -96,6 +96,7 @@ struct BenchEstimateAnswer {
     /// Most likely value.
     value: f64,
     /// Bounds of the 95 % confidence interval; infinite if nothing limits it.
+    #[answer(interval)]
     confidence_95: [f64; 2],
 }
 

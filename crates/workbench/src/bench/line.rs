@@ -43,6 +43,7 @@ pub(super) struct LineTestTableAnswer {
     #[answer(flatten)]
     input: LineInputAnswer,
     /// Smallest and largest pressure at the open end.
+    #[answer(interval)]
     pressure_pa: [f64; 2],
 }
 
@@ -51,10 +52,12 @@ pub(super) struct LineTestTableAnswer {
 enum LineInputAnswer {
     PressureRise {
         /// Smallest and largest volume displaced into the line, only of a slow pressure rise.
+        #[answer(interval)]
         volume_m3: [f64; 2],
     },
     FrequencyResponse {
         /// Smallest and largest flow into the line, only of a frequency response.
+        #[answer(interval)]
         flow_m3_per_s: [f64; 2],
     },
 }

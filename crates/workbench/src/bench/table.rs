@@ -38,6 +38,7 @@ struct BenchSignalAnswer {
     /// SI unit of the range, not of the file; degrees Celsius of a temperature.
     unit: &'static str,
     /// Smallest and largest value.
+    #[answer(interval)]
     range: [f64; 2],
 }
 

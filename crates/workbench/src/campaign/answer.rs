@@ -96,6 +96,8 @@ struct VariedRangeAnswer {
     minimum: f64,
     /// Upper end in SI, of a normal distribution two standard deviations above the middle.
     maximum: f64,
+    /// SI unit of the number; empty for a pure number.
+    unit: &'static str,
 }
 
 words! {
@@ -169,7 +171,7 @@ struct BeyondBoxAnswer {
     /// middle.
     maximum: f64,
     /// Range in the box, from low to high.
-    #[answer(key = "box")]
+    #[answer(key = "box", interval)]
     designed_for: Reasoned<[f64; 2]>,
 }
 
@@ -256,6 +258,7 @@ fn range(range: &VariedRange) -> VariedRangeAnswer {
         distribution: range.distribution,
         minimum: range.minimum,
         maximum: range.maximum,
+        unit: range.si_unit(),
     }
 }
 

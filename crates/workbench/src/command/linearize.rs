@@ -8,6 +8,7 @@ use super::unprinted::Unprinted;
 use crate::answer::{Body, picture_files};
 use crate::linearize;
 use crate::project::Loaded;
+use crate::report;
 use crate::source::Source;
 
 fn linearized(setup: &Setup<'_>) -> Result<Linearization, CommandError> {
@@ -17,12 +18,11 @@ fn linearized(setup: &Setup<'_>) -> Result<Linearization, CommandError> {
 pub(super) fn linearize_answer(loaded: &Loaded) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let linearization = linearized(&setup)?;
-    Ok(Unprinted {
-        document: linearize::output(&setup, &linearization),
-        body: linearize::body(&setup, &linearization).into_object(),
-        files: linearize::files(&linearization),
-        affirmative: true,
-    })
+    let mut document = linearize::output(&setup, &linearization);
+    let body = linearize::body(&setup, &linearization).into_object();
+    let files = linearize::files(&linearization);
+    document.later(move || report::of_models(&linearization));
+    Ok(Unprinted { document, body, files, affirmative: true })
 }
 
 pub(super) fn swept_answer(

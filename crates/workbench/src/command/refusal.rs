@@ -34,6 +34,8 @@ struct DiagnosticAnswer {
     line: Option<usize>,
     /// Column in the line, from 1; null if none is concerned.
     column: Option<usize>,
+    /// Line and column after the last character of the place; null if none is concerned.
+    end: Option<[usize; 2]>,
     /// Expected value, if it can be named.
     expected: Option<String>,
     /// Change that would help, if one is known.
@@ -99,6 +101,7 @@ fn refusal_row(found: &Diagnostic) -> DiagnosticAnswer {
         file: Some(found.file.clone()),
         line: place(found.line),
         column: place(found.column),
+        end: found.end,
         expected: found.expected.clone(),
         help: found.help.clone(),
     }
@@ -119,6 +122,7 @@ pub fn failure_json(command: Option<&str>, project_sha256: Option<&str>, message
         file: None,
         line: None,
         column: None,
+        end: None,
         expected: None,
         help: None,
     };

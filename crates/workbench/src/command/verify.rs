@@ -17,6 +17,7 @@ use crate::answer::{Answer, Body};
 use crate::audit::{self, AuditAnswer, CERTIFICATE_FILE, certificate_of};
 use crate::document::Document;
 use crate::project::Loaded;
+use crate::report;
 use crate::source::Source;
 use crate::trial::{self, TrialAnswer};
 
@@ -78,6 +79,7 @@ pub(super) fn verify_answer(
     if !on_machine {
         document.append(audit::output(&view, None));
         let body = body.into_object();
+        document.later(move || report::of_audit(&problem, &view, None));
         return Ok(Unprinted { document, body, files, affirmative: is_met });
     }
     let watch = &mut within(watch, [proven, 1.0]);
@@ -88,12 +90,8 @@ pub(super) fn verify_answer(
     };
     document.append(audit::output(&view, Some(&trial)));
     body.machine = Some(trial::body(&trial));
-    Ok(Unprinted {
-        document,
-        body: body.into_object(),
-        files,
-        affirmative: is_met
-            && trial.agreement() != Agreement::Contradicts
-            && trial.satisfies() != Some(false),
-    })
+    let affirmative =
+        is_met && trial.agreement() != Agreement::Contradicts && trial.satisfies() != Some(false);
+    document.later(move || report::of_audit(&problem, &view, Some(&trial)));
+    Ok(Unprinted { document, body: body.into_object(), files, affirmative })
 }

@@ -69,7 +69,7 @@ struct StatedAnswer {
     /// Table of the file that states it, such as `[linear]`.
     place: &'static str,
     /// Least and greatest stated value.
-    #[answer(optional)]
+    #[answer(optional, interval)]
     bounds: Option<[f64; 2]>,
     /// Difference of the stated value from the derived one, of the latter; null if that does not
     /// exist.
@@ -110,8 +110,10 @@ struct ReplacedRangeAnswer {
     /// SI unit of its values.
     unit: &'static str,
     /// Replaced range, from low to high.
+    #[answer(interval)]
     replaced: [f64; 2],
     /// Visited range, from low to high.
+    #[answer(interval)]
     visited: [f64; 2],
     /// Fraction of the replaced range that is visited, of its logarithm where it is spaced by equal
     /// factors.

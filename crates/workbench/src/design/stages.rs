@@ -20,6 +20,7 @@ use crate::audit::{self, certificate_of};
 use crate::error::CommandError;
 use crate::project::{Loaded, with_laws, with_line_model, with_pressure_feedback};
 use crate::quantity::MotionKind;
+use crate::specification::number_cell;
 
 /// Factors from the design frequencies to the ends of the drawn range.
 const BEYOND: [f64; 2] = [0.1, 30.0];
@@ -156,14 +157,14 @@ fn prefilter_band(side: &AuditedController) -> Result<Option<OutputFile>, Linear
     let mut csv = Csv::new(
         "specification,frequency_rad_per_s,lower_db,least_db,greatest_db,upper_db,left_below_db,left_above_db",
     );
-    let tracking = problem.specifications.iter().enumerate();
     let mut any = false;
-    for (index, one) in tracking {
+    for (index, one) in problem.specifications.iter().enumerate() {
         let (Some(lower), upper) = one.requirement.limits() else { continue };
         if !problem.has_prefilter {
             continue;
         }
         any = true;
+        let number = number_cell(problem.number_of(index));
         let [from, to] = one.band_rad_per_s;
         let members = problem.members()?;
         for frequency in drawn(problem).into_iter().filter(|frequency| (from..=to).contains(frequency)) {
@@ -177,7 +178,7 @@ fn prefilter_band(side: &AuditedController) -> Result<Option<OutputFile>, Linear
             };
             let [low, least, greatest, high] = [low, least, greatest, high].map(decibels);
             let (below, above) = (least - low, high - greatest);
-            csv.row(&[&index, &frequency, &low, &least, &greatest, &high, &below, &above]);
+            csv.row(&[&number, &frequency, &low, &least, &greatest, &high, &below, &above]);
         }
     }
     Ok(any.then(|| OutputFile::new("prefilter_band.csv", csv.text())))
@@ -211,18 +212,12 @@ pub(crate) fn bound_files(problem: &RobustProblem, found: &[DesignFrequency]) ->
     for one in found {
         for part in &one.bounds.parts {
             let Some(specification) = problem.specifications.get(part.specification) else { continue };
+            let number = number_cell(problem.number_of(part.specification));
             let kind = kind_key(&specification.requirement);
             for (phase, forbidden) in part.bound.phases_rad.iter().zip(&part.bound.forbidden) {
                 for [low, high] in forbidden.intervals() {
                     let phase_deg = phase.to_degrees();
-                    bounds.row(&[
-                        &part.specification,
-                        &kind,
-                        &one.frequency_rad_per_s,
-                        &phase_deg,
-                        &low,
-                        &high,
-                    ]);
+                    bounds.row(&[&number, &kind, &one.frequency_rad_per_s, &phase_deg, &low, &high]);
                 }
             }
         }

@@ -68,6 +68,7 @@ impl Block {
             Block::SideBySide(document) => html! { div.pair { (document.markup()) } },
             Block::Folded(summary, table) => html! { details { summary { (summary) } (table.markup()) } },
             Block::Preformatted(text) => html! { pre { (text) } },
+            Block::Later(later) => later.blocks().markup(),
         }
     }
 }

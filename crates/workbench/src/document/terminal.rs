@@ -38,7 +38,7 @@ impl Document {
                 Block::Callout(_, sentence) => indented(&mut out, sentence),
                 Block::SideBySide(document) => out.push_str(&document.text()),
                 Block::Preformatted(text) => out.push_str(text),
-                Block::HeadingOfFigures(_) | Block::Explanation(_) | Block::Figure(_) => {}
+                Block::HeadingOfFigures(_) | Block::Explanation(_) | Block::Figure(_) | Block::Later(_) => {}
             }
         }
         out

@@ -77,6 +77,7 @@ struct FrictionEstimateAnswer {
     /// Estimate; null if the recordings do not determine it.
     value: Option<f64>,
     /// Interval of 95 % that the recordings leave, from low to high.
+    #[answer(interval)]
     confidence_95: [f64; 2],
     /// Reason for which there is no estimate; null if there is one.
     reason: Option<String>,
@@ -136,6 +137,7 @@ struct VaryingVelocityAnswer {
     /// Mean velocity of the piston, positive while the rod extends.
     velocity_m_per_s: f64,
     /// Least and greatest velocity over the shortest windows that noise allows.
+    #[answer(interval)]
     velocity_range_m_per_s: [f64; 2],
     /// Number of rows.
     rows: usize,

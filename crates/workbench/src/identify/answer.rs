@@ -109,6 +109,7 @@ struct TestOilAnswer {
     /// Temperature for which the coefficients are stated.
     stated_at_degc: f64,
     /// Lowest and highest temperature of all recordings.
+    #[answer(interval)]
     recorded_degc: [f64; 2],
     /// Relative decrease of the dynamic viscosity per degree.
     viscosity_slope_per_degc: f64,

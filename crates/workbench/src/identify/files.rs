@@ -55,6 +55,7 @@ struct ColumnAnswer {
     /// Unit of `range`.
     unit: &'static str,
     /// Least and greatest value of the rows that are used; inf and -inf if none has a value.
+    #[answer(interval)]
     range: [f64; 2],
     /// Number of rows without a value.
     gaps: usize,

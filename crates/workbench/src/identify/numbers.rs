@@ -63,7 +63,7 @@ pub(super) struct GraphReadingsAnswer {
 /// the alphabet.
 #[derive(Answer)]
 struct GraphIntervalsAnswer {
-    #[answer(flatten)]
+    #[answer(flatten, interval)]
     intervals: Keyed<GraphReadingKeys, [f64; 2]>,
 }
 

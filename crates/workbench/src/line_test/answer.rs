@@ -68,6 +68,7 @@ struct LineEstimateAnswer {
     /// Estimate; null if the recordings do not determine it.
     value: Option<f64>,
     /// Confidence interval of 95 %, from low to high; null without an estimate.
+    #[answer(interval)]
     confidence_95: Option<[f64; 2]>,
     /// Reason for which there is no estimate; null if there is one.
     reason: Option<String>,
@@ -96,6 +97,7 @@ struct PressureRiseAnswer {
     /// Origin of the displaced volume.
     volume_from: VolumeSource,
     /// Lowest and highest pressure.
+    #[answer(interval)]
     pressures_pa: [f64; 2],
     /// Number of terms of the volume over the pressure; 1 for a constant compliance, that of free
     /// air apart.

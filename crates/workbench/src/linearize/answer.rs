@@ -165,6 +165,7 @@ struct AgreementBandsAnswer {
     /// Equation of the reduced model in the thesis.
     equation: String,
     /// Bands from the lower to the upper frequency, ascending, as resolved by the grid.
+    #[answer(interval)]
     bands_rad_per_s: Vec<[f64; 2]>,
 }
 

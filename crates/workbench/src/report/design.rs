@@ -14,6 +14,9 @@ use phea_engineering::trial::Trial;
 use phea_qft::design::DesignStatus;
 use phea_qft::verification::Verdict;
 
+pub(super) use magnitudes::figures as magnitudes;
+pub(super) use prefilter::figures as prefilters;
+
 use super::chapter::Chapter;
 use super::family_steps;
 use crate::answer::{OutputFile, significant};
@@ -155,15 +158,35 @@ impl Designed {
 const ANCHOR: &str = "design";
 const TITLE: &str = "Design of the controller";
 
+/// Name and title of the figure of the trial.
+const MACHINE_STEPS: [&str; 2] =
+    ["design_machine_steps", "The designed controller in the nonlinear simulation"];
+
+/// The figures of the trial of the designed controller.
+pub(super) fn figures_of_trial(trial: &Trial) -> Vec<Figure> {
+    trial::document(trial, Some(MACHINE_STEPS)).into_figures()
+}
+
+/// Step responses of the family with the designed controller, or the reason why there are none;
+/// empty if no tracking is specified.
+pub(super) fn family_steps_of(view: &ProjectDesign) -> Document {
+    let side = &view.designed;
+    let names = ["design_steps", "Step responses of the family with the designed controller"];
+    let mut out = Document::default();
+    match family_steps::figure(&side.problem, &side.view, names) {
+        Some(Ok(figure)) => out.figures([figure]),
+        Some(Err(reason)) => out.explanation(format!("No step responses of the family: {reason}.")),
+        None => {}
+    }
+    out
+}
+
 fn chapter(found: &FoundDesign) -> Result<Chapter, CommandError> {
     let view = &found.view;
     let side = &view.designed;
     let mut out = status(view);
     if let Some(trial) = &view.trial {
-        out.append(trial::document(
-            trial,
-            Some(["design_machine_steps", "The designed controller in the nonlinear simulation"]),
-        ));
+        out.append(trial::document(trial, Some(MACHINE_STEPS)));
     }
     out.append(pressure_feedback(view));
     out.heading("The designed controller");
@@ -180,15 +203,7 @@ fn chapter(found: &FoundDesign) -> Result<Chapter, CommandError> {
     out.explanation("The first page has the Nichols chart.");
     out.figures_below("The closed loops of the family", magnitudes::figures(view)?);
     out.figures_below("The prefilter", prefilter::figures(view)?);
-    match family_steps::figure(
-        &side.problem,
-        &side.view,
-        ["design_steps", "Step responses of the family with the designed controller"],
-    ) {
-        Some(Ok(figure)) => out.figures([figure]),
-        Some(Err(reason)) => out.explanation(format!("No step responses of the family: {reason}.")),
-        None => {}
-    }
+    out.append(family_steps_of(view));
     out.append(structures(view));
     out.append(limits(view));
     out.append(costs(view));

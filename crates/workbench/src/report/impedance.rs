@@ -161,7 +161,8 @@ fn hidden_label(by: HidingMass, motion: MotionKind) -> &'static str {
     }
 }
 
-fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
+/// The impedance with its asymptotes.
+pub(super) fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
     let grid = frequency_grid(&linearization.full.command)?;
     let (first, last) = (grid.first().copied().unwrap_or(0.01), grid.last().copied().unwrap_or(1e4));
     let mut lines: Vec<AsymptoteLine> = Vec::new();

@@ -15,7 +15,7 @@ use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 
 pub(super) fn chapter(setup: &Setup<'_>, linearization: &Linearization) -> Result<Chapter, LinearError> {
-    let figures = vec![poles(linearization), responses(linearization)?, reduction(linearization)?];
+    let figures = figures(linearization)?;
     let mut out = Document::default();
     let held = match (linearization.load_yields, linearization.first_order_has_load) {
         (false, _) => "",
@@ -33,6 +33,11 @@ pub(super) fn chapter(setup: &Setup<'_>, linearization: &Linearization) -> Resul
     out.left_out(setup);
     out.append(document(linearization, figures));
     Ok(Chapter::of("models", "Linear models", out))
+}
+
+/// Pole map, responses of the models, and the error of the model with one load pressure.
+pub(super) fn figures(linearization: &Linearization) -> Result<Vec<Figure>, LinearError> {
+    Ok(vec![poles(linearization), responses(linearization)?, reduction(linearization)?])
 }
 
 fn poles(linearization: &Linearization) -> Figure {

@@ -13,16 +13,21 @@ use crate::sizing::{document, hose_name, model_name, uncertain_name};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing, units: &Units) -> Chapter {
-    let mut figures = vec![bores(problem, sizing), lengths(problem, sizing)];
-    figures.extend(uncertain(sizing));
     let hoses = match problem.hoses.len() {
         1 => "the one hose".to_string(),
         count => format!("the {count} hoses"),
     };
     let mut out = Document::default();
     out.explanation(format!("The procedure of Ledezma (2019), section 6.3, applied to {hoses} of the catalogue, once with each stiffness model; both lines alike."));
-    out.append(document(sizing, figures, units));
+    out.append(document(sizing, figures(problem, sizing), units));
     Chapter::of("sizing", "Sizing of the hose", out)
+}
+
+/// Nomograph, lengths and, if a hose is chosen, its uncertainties.
+pub(super) fn figures(problem: &SizingProblem, sizing: &Sizing) -> Vec<Figure> {
+    let mut figures = vec![bores(problem, sizing), lengths(problem, sizing)];
+    figures.extend(uncertain(sizing));
+    figures
 }
 
 /// Replacement for the chapter: the reason why the procedure does not apply to the rig.

@@ -103,7 +103,8 @@ fn over_force(rig: &Rig, found: StiffnessOverForce, units: Units) -> Figure {
     chart.draw(&Words::new("stiffness-force", format!("Hydraulic stiffness over the {force}"), caption))
 }
 
-fn positions(stroke: f64) -> Vec<f64> {
+/// Positions of the curves over a stroke.
+pub(crate) fn positions(stroke: f64) -> Vec<f64> {
     (0..=POSITIONS).map(|step| stroke * f64::from(step) / f64::from(POSITIONS)).collect()
 }
 

@@ -12,6 +12,7 @@ use crate::answer::{Answer, Csv, OrReason, OutputFile, words};
 use crate::audit::{self, SpecificationMarginAnswer, StableAnswer, stability_reason, stable};
 use crate::caveat;
 use crate::project::{DeclaredElement, ElementKind, SpecificationKind};
+use crate::specification::number_cell;
 
 /// Answer of `shape`.
 #[derive(Answer)]
@@ -210,7 +211,8 @@ pub fn files(view: &ProjectShaping) -> Vec<OutputFile> {
     let mut csv = Csv::new("specification,kind,frequency_rad_per_s,margin_db,allowed");
     for margin in &view.margins {
         let DesignMargin { worst, placement } = margin;
-        let (number, kind) = (worst.specification + 1, kind(view, worst.specification));
+        let number = number_cell(view.problem.number_of(worst.specification));
+        let kind = kind(view, worst.specification);
         let allowed = matches!(placement, Placement::Allowed { .. });
         csv.row(&[&number, &kind, &worst.frequency_rad_per_s, &worst.margin_db, &allowed]);
     }

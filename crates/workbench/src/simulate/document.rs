@@ -6,6 +6,7 @@ use phea_engineering::simulate::{
 };
 
 use super::check;
+use super::compared::compared_headings;
 use super::exceeded_words;
 use super::metrics::{cells_of, label_cell, label_within, metric_cell};
 use super::repetition::{divergence_words, sentences as doubts, work_words};
@@ -375,15 +376,16 @@ fn occurrence_words(&Occurrence { kind, time_s, begins }: &Occurrence, motion: M
 pub(crate) fn comparison(comparison: &ScenarioComparison<'_>, requested: &[Loaded]) -> Document {
     let units = units_of(comparison);
     let mut out = Document::default();
-    for (number, (loaded, runs)) in comparison.projects.iter().enumerate() {
-        out.line(format!("{}  {} ({})", letter(number), loaded.project.title, loaded.path));
+    let headings = compared_headings(&requested.iter().collect::<Vec<_>>());
+    let heading = |number: usize| headings.get(number).map_or("", String::as_str);
+    for (number, (_, runs)) in comparison.projects.iter().enumerate() {
+        out.line(format!("{}  {}", letter(number), heading(number)));
         for run in runs.iter().filter(|run| !run.is_reliable()) {
             out.line(format!("   {}", headline(run)));
         }
     }
-    for (number, loaded) in requested.iter().enumerate().skip(comparison.projects.len()) {
-        let (letter, title) = (letter(number), &loaded.project.title);
-        out.line(format!("{letter}  {title} ({})", loaded.path));
+    for number in comparison.projects.len()..requested.len() {
+        out.line(format!("{}  {}", letter(number), heading(number)));
         out.line("   not begun");
     }
     for name in comparison.scenarios() {

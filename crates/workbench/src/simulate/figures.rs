@@ -3,12 +3,14 @@
 use phea_engineering::simulate::{Cause, Metrics, Record, ScenarioComparison, ScenarioRun, Window};
 
 use super::cause_words;
+use super::compared::compared_titles;
 use super::span::{span_of, span_of_events};
 use crate::answer::{OutputFile, picture_files, significant};
 use crate::document::capital;
 use crate::figure::axis::extent;
 use crate::figure::{CurveChart, CurvePanel, CurveStyle, DisplayUnit, Figure, SettlingBand, Words};
 use crate::over_time::{ForceStep, Trace, chart, measured_force, named, panel, trace, with_lines_beneath};
+use crate::project::Loaded;
 use crate::quantity::{MotionKind, MotionWords, Units};
 use phea_hydraulics::signal::Signal;
 
@@ -403,7 +405,8 @@ pub(crate) fn comparison_files(comparison: &ScenarioComparison<'_>) -> Vec<Outpu
 /// Figures of one scenario for all projects that have it: the whole, and each event of the first
 /// project.
 fn compared(comparison: &ScenarioComparison<'_>, name: &str, number: usize) -> Vec<Figure> {
-    let titles = comparison.projects.iter().map(|(loaded, _)| loaded.project.title.clone());
+    let projects: Vec<&Loaded> = comparison.projects.iter().map(|(loaded, _)| *loaded).collect();
+    let titles = compared_titles(&projects).into_iter();
     let (titles, runs): (Vec<String>, Vec<&ScenarioRun>) =
         titles.zip(comparison.runs_of(name)).filter_map(|(title, run)| Some((title, run?))).unzip();
     let force = capital(units_of(&runs).motion.words().force);

@@ -27,6 +27,7 @@ pub(crate) struct SizeAnswer {
     #[answer(optional)]
     pump_flow_m3_per_s: Option<f64>,
     /// Bores at the highest and at the lowest recommended oil velocity.
+    #[answer(interval)]
     bore_range_m: [f64; 2],
     /// Proportional gain at which the time constant requires an infinite hydraulic stiffness.
     pole_gain_v_per_n: f64,

@@ -56,6 +56,12 @@ pub(crate) fn stated(named: Option<NamedSpecification>) -> String {
     }
 }
 
+/// Cell of a table for other programs with the number of a specification in the file; empty for a
+/// limit that is not declared there.
+pub(crate) fn number_cell(number: Option<usize>) -> String {
+    number.map_or(String::new(), |number| number.to_string())
+}
+
 fn number(named: Option<NamedSpecification>) -> Option<usize> {
     named.and_then(|named| named.number)
 }

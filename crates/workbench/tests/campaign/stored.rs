@@ -3,7 +3,7 @@
 
 use crate::answer_schema::parsed;
 use phea_workbench::command::CampaignChunks;
-use phea_workbench::engineering::campaign::RowFault;
+use phea_workbench::engineering::campaign::{RowFault, StoredSeed};
 
 use super::*;
 
@@ -145,17 +145,21 @@ fn a_table_of_another_campaign_is_left_unchanged() {
         Err(CommandError::Campaign(error)) => error,
         other => panic!("{other:?}"),
     };
-    assert_eq!(refused(resumed(&loaded, &other, &mut page)), CampaignError::OtherCampaign { line: 2 });
+    let found = refused(resumed(&loaded, &other, &mut page));
+    assert_eq!(found, CampaignError::OtherCampaign { line: 2, seed: 2, stored_seed: StoredSeed::Other(1) });
+    assert!(found.to_string().contains("was drawn with seed 1, and this campaign has seed 2"), "{found}");
     let fewer = request(3);
     assert_eq!(
         refused(resumed(&loaded, &fewer, &mut page)),
-        CampaignError::MoreStored { stored: 4, requested: 3 }
+        CampaignError::MoreStored { seed: 1, stored: 4, requested: 3 }
     );
     let changed = load(&[&SHORT as &[&str], &["controller.saturation=9 V"]].concat());
-    assert_eq!(refused(resumed(&changed, &requested, &mut page)), CampaignError::OtherCampaign { line: 2 });
+    let found = refused(resumed(&changed, &requested, &mut page));
+    assert_eq!(found, CampaignError::OtherCampaign { line: 2, seed: 1, stored_seed: StoredSeed::Unknown });
     assert_eq!(page.text, before);
     let mut letter = Page { text: "Dear reader".to_string() };
-    assert_eq!(refused(resumed(&loaded, &requested, &mut letter)), CampaignError::OtherCampaign { line: 1 });
+    let found = refused(resumed(&loaded, &requested, &mut letter));
+    assert_eq!(found, CampaignError::OtherCampaign { line: 1, seed: 1, stored_seed: StoredSeed::Unknown });
     assert_eq!(letter.text, "Dear reader");
 }
 

@@ -105,6 +105,7 @@ struct SpecificationProofAnswer {
 #[derive(Answer)]
 struct ViolatedBandAnswer {
     /// Ends of the band.
+    #[answer(interval)]
     band_rad_per_s: [f64; 2],
     #[answer(flatten)]
     worst: SpecificationMarginAnswer,

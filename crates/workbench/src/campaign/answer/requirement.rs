@@ -21,6 +21,7 @@ pub(super) struct CampaignRequirementAnswer {
     runs: OrReason<usize>,
     /// Confidence interval of 95 % for the probability that a run satisfies it, from low to high,
     /// by Wilson.
+    #[answer(interval)]
     confidence_95: OrReason<[f64; 2]>,
     /// Run that is furthest from the requirement, if there is a run.
     #[answer(optional)]

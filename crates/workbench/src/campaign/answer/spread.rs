@@ -37,6 +37,7 @@ pub(super) struct CampaignLumpAnswer {
     /// Name of the parameter: `hydraulic_stiffness`, `flow_gain` or `flow_pressure_coefficient`.
     name: &'static str,
     /// Bounds of the parameter in the family, from low to high.
+    #[answer(interval)]
     bounds: Reasoned<[f64; 2]>,
     /// Number of runs whose machine is outside the bounds; null without bounds.
     outside: Option<usize>,

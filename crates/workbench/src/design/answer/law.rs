@@ -43,6 +43,7 @@ pub(super) struct StructureAnswer {
     /// Sign of the gain, 1 or -1.
     sign: f64,
     /// Least and greatest magnitude of the gain.
+    #[answer(interval)]
     gain: [f64; 2],
     /// Factors in series.
     parts: Vec<StructurePartAnswer>,
@@ -65,13 +66,13 @@ struct StructurePartAnswer {
     /// Kind of the factor.
     kind: StructureFactor,
     /// Corner frequency, of a pair or notch the natural one; left out if the factor has none.
-    #[answer(optional)]
+    #[answer(optional, interval)]
     frequency_rad_per_s: Option<[f64; 2]>,
     /// Damping ratio of a pair, or of the poles of a notch.
-    #[answer(optional)]
+    #[answer(optional, interval)]
     damping_ratio: Option<[f64; 2]>,
     /// Magnitude of a notch at its frequency.
-    #[answer(optional)]
+    #[answer(optional, interval)]
     depth: Option<[f64; 2]>,
 }
 

@@ -69,7 +69,7 @@ pub(super) struct CrossoverAnswer {
     first_crossover_rad_per_s: OrReason<f64>,
     /// Lowest and highest frequency above the first crossover at which |L| is 1 again, the highest
     /// `inf` if |L| remains above 1; left out if |L| remains below 1.
-    #[answer(optional)]
+    #[answer(optional, interval)]
     above_again_rad_per_s: Option<[f64; 2]>,
 }
 

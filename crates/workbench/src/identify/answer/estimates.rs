@@ -33,10 +33,11 @@ pub(super) struct ValveEstimateAnswer {
     value: f64,
     /// Confidence interval of 95 % by linearisation, from low to high; null if the recordings do
     /// not determine the value.
+    #[answer(interval)]
     confidence_95: Option<[f64; 2]>,
     /// Confidence interval of 95 % by the bootstrap, if one was requested, at least one of its
     /// repetitions converged and the recordings determine the value.
-    #[answer(optional)]
+    #[answer(optional, interval)]
     bootstrap_95: Option<[f64; 2]>,
     /// Reason for which there is no interval.
     #[answer(optional)]

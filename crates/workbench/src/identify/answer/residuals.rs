@@ -54,6 +54,7 @@ struct MisfitPlaceAnswer {
     /// True while the command rises, false while it falls.
     command_rises: bool,
     /// Range of the command, from low to high.
+    #[answer(interval)]
     command_v: [f64; 2],
     /// Mean of the modelled less the recorded signal, over the range of the signal.
     mean_fraction: f64,

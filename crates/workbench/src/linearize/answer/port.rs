@@ -77,6 +77,7 @@ pub(crate) struct PassivityAnswer {
     /// Frequencies of the poles of Z on the imaginary axis, in rad/s.
     imaginary_poles: Vec<f64>,
     /// Bands from the lower to the upper frequency in rad/s in which Re Z is negative.
+    #[answer(interval)]
     bands: Vec<[f64; 2]>,
 }
 
@@ -98,6 +99,7 @@ pub(super) struct VirtualImpedanceAnswer {
     within_percent: f64,
     /// Widest band, from the lower to the upper frequency, in which the impedance of the loop
     /// follows the required one.
+    #[answer(interval)]
     follows_rad_per_s: OrReason<[f64; 2]>,
     /// Both impedances at selected frequencies.
     points: Vec<VirtualImpedancePointAnswer>,

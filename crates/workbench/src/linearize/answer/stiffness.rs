@@ -25,8 +25,10 @@ pub(super) struct LinearStiffnessAnswer {
     #[answer(key = QuantityName::moving("maximum_stiffest_wall", &STIFFNESS))]
     maximum_stiffest_wall: f64,
     /// Least and greatest stiffness in N/m or N m/rad, with one bulk modulus for line and chamber.
+    #[answer(interval)]
     uniform: [f64; 2],
     /// Least and greatest stiffness in N/m or N m/rad, with a bulk modulus of each volume.
+    #[answer(interval)]
     by_volume: [f64; 2],
     /// Sentence that compares the two stiffness models.
     sentence: String,

@@ -12,7 +12,7 @@ use crate::figure::{FamilyMagnitude, Figure, Words};
 use crate::specification::name_words;
 
 /// A figure for each specification to which a loop has a margin.
-pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> {
+pub(in crate::report) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> {
     let sides = [("designed", Some(&view.designed)), ("given", view.published.as_deref())];
     let sides = sides.into_iter().filter_map(|(name, side)| Some((name, side?)));
     let loops = sides.map(|(name, side)| LoopFamily::new(name, &side.problem, &side.view));

@@ -20,7 +20,7 @@ const DISTINGUISHED_DB: f64 = 0.01;
 const BEYOND: [f64; 2] = [0.1, 10.0];
 
 /// A figure for each tracking specification for which a prefilter was designed.
-pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> {
+pub(in crate::report) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> {
     let mut figures = Vec::new();
     for (index, one) in view.designed.problem.specifications.iter().enumerate() {
         if one.requirement.is_tracking() && view.designed.problem.has_prefilter {

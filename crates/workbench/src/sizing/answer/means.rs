@@ -47,6 +47,7 @@ struct SizedGasAnswer {
     pressure_ratio: f64,
     /// Softest and stiffest of the least hydraulic stiffnesses over the stroke, within the
     /// range of forces.
+    #[answer(interval)]
     stiffness_n_per_m: [f64; 2],
 }
 
