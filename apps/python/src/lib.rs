@@ -6,6 +6,7 @@
 mod answer;
 mod chunks;
 mod columns;
+mod command_line;
 mod examples;
 mod failure;
 mod linear;
@@ -23,6 +24,8 @@ mod _native {
     use crate::chunks::{CampaignTable, campaign_lines};
     #[pymodule_export]
     use crate::columns::columns;
+    #[pymodule_export]
+    use crate::command_line::run_command;
     #[pymodule_export]
     use crate::examples::examples;
     #[pymodule_export]
