@@ -6,19 +6,20 @@
 
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Number of runs of each command; the fastest and the median are shown.
 const RUNS: usize = 15;
 
-const COMMANDS: [&[&str]; 7] = [
-    &["check", "examples/ybitu/hose.toml"],
-    &["size", "examples/ybitu/hose.toml"],
-    &["linearize", "examples/ybitu/hose.toml"],
-    &["verify", "examples/ybitu/hose.toml"],
-    &["report", "examples/ybitu/hose.toml"],
-    &["report", "examples/ybitu/hose.toml", "--out"],
-    &["report", "examples/ybitu/pipe.toml"],
+/// Commands; the files of `--out` go to a scratch folder.
+const COMMANDS: [&str; 7] = [
+    "check ybitu/hose.toml",
+    "size ybitu/hose.toml",
+    "linearize ybitu/hose.toml",
+    "verify ybitu/hose.toml",
+    "report ybitu/hose.toml",
+    "report ybitu/hose.toml --out figures",
+    "report ybitu/pipe.toml",
 ];
 
 /// Runs the benches in a separate target folder; `from_scratch` empties it first and times the
@@ -30,55 +31,39 @@ pub(crate) fn run(root: &Path, from_scratch: bool) -> bool {
         return false;
     }
     let start = Instant::now();
-    let built = Command::new("cargo")
-        .args(["build", "--release", "-p", "phea-cli", "--target-dir"])
-        .arg(&target)
-        .current_dir(root)
-        .status();
-    if !built.is_ok_and(|status| status.success()) {
+    let mut build = Command::new("cargo");
+    build.args(["build", "--release", "-p", "phea-cli", "--target-dir"]).arg(&target).current_dir(root);
+    if !build.status().is_ok_and(|status| status.success()) {
         return false;
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let kind = if from_scratch { "from scratch" } else { "up to date or incremental" };
     println!("\n{:>8.1} s  release build, {kind}, {cores} cores", start.elapsed().as_secs_f64());
     println!("\n{:>10} {:>10}  command ({RUNS} runs)", "fastest", "median");
-    let binary = target.join("release").join("phea");
     let scratch = target.join("written");
-    COMMANDS.iter().all(|arguments| bench(root, &binary, &scratch, arguments))
+    COMMANDS.iter().all(|line| {
+        let once = |_| milliseconds(&root.join("examples"), &target.join("release/phea"), &scratch, line);
+        let times: Option<Vec<f64>> = (0..RUNS).map(once).collect();
+        let Some(mut times) = times else {
+            eprintln!("`phea {line}` failed");
+            return false;
+        };
+        times.sort_by(f64::total_cmp);
+        println!("{:>7.1} ms {:>7.1} ms  phea {line}", times[0], times[RUNS / 2]);
+        true
+    })
 }
 
-/// Times one command; its files go to a scratch folder.
-fn bench(root: &Path, binary: &Path, scratch: &Path, arguments: &[&str]) -> bool {
-    let name = arguments.join(" ");
-    let mut times = Vec::new();
-    for _ in 0..RUNS {
-        match once(root, binary, scratch, arguments) {
-            Some(time) => times.push(time),
-            None => {
-                eprintln!("`phea {name}` failed");
-                return false;
-            }
-        }
-    }
-    times.sort();
-    let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
-    println!("{:>7.1} ms {:>7.1} ms  phea {name}", milliseconds(times[0]), milliseconds(times[RUNS / 2]));
-    true
-}
-
-/// Runs the command once. Status 1 counts as an answer too: no.
-fn once(root: &Path, binary: &Path, scratch: &Path, arguments: &[&str]) -> Option<Duration> {
+/// Time of one run in the scratch folder, in milliseconds. Status 1 counts as an answer too: no.
+fn milliseconds(examples: &Path, binary: &Path, scratch: &Path, line: &str) -> Option<f64> {
     std::fs::create_dir_all(scratch).ok()?;
-    let arguments: Vec<std::path::PathBuf> = arguments
-        .iter()
-        .map(|argument| if argument.ends_with(".toml") { root.join(argument) } else { argument.into() })
-        .collect();
     let mut command = Command::new(binary);
-    command.args(&arguments).current_dir(scratch).stdout(Stdio::null()).stderr(Stdio::null());
-    if arguments.last().is_some_and(|last| last.as_os_str() == "--out") {
-        command.arg("figures");
+    command.current_dir(scratch).stdout(Stdio::null()).stderr(Stdio::null());
+    for word in line.split(' ') {
+        let is_project = word.ends_with(".toml");
+        command.arg(if is_project { examples.join(word) } else { word.into() });
     }
     let start = Instant::now();
     let status = command.status().ok()?;
-    matches!(status.code(), Some(0 | 1)).then(|| start.elapsed())
+    matches!(status.code(), Some(0 | 1)).then(|| start.elapsed().as_secs_f64() * 1e3)
 }

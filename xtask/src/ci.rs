@@ -5,75 +5,72 @@
 //! mended.
 
 mod comparisons;
+mod dist;
 mod python;
 mod tools;
 
 use std::fs::File;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Outcome of a stage.
-enum Outcome {
-    Passed,
-    /// Failure, with the reason in a few words.
+/// Outcome of a stage or of one of its commands.
+type Outcome = Result<(), Problem>;
+
+/// Reason why a stage did not pass, in a few words.
+enum Problem {
     Failed(String),
     /// The stage could not be run here, for a reason outside the project.
     Skipped(String),
 }
 
-impl Outcome {
-    fn name(&self) -> &'static str {
-        match self {
-            Outcome::Passed => "passed",
-            Outcome::Failed(_) => "FAILED",
-            Outcome::Skipped(_) => "SKIPPED",
-        }
-    }
-
-    fn remark(&self) -> &str {
-        match self {
-            Outcome::Passed => "",
-            Outcome::Failed(remark) | Outcome::Skipped(remark) => remark,
-        }
-    }
-
-    /// The first of the two outcomes that is not a pass.
-    fn and(self, other: impl FnOnce() -> Outcome) -> Outcome {
-        if matches!(self, Outcome::Passed) { other() } else { self }
+/// The word for an outcome, and its reason.
+fn described(outcome: &Outcome) -> (&'static str, &str) {
+    match outcome {
+        Ok(()) => ("passed", ""),
+        Err(Problem::Failed(reason)) => ("FAILED", reason),
+        Err(Problem::Skipped(reason)) => ("SKIPPED", reason),
     }
 }
 
-/// A stage by its name.
-type Stage = (&'static str, fn(&Runner) -> Outcome);
+/// Time at which a stage runs.
+#[derive(Clone, Copy, PartialEq)]
+enum When {
+    /// One after the other before the tests, the cheap and informative ones first.
+    First,
+    Tests,
+    /// One after the other in parallel with the tests, which do not occupy all processors; the
+    /// output is shown at the end.
+    Aside,
+    /// Last, only if the stage is named.
+    Named,
+}
 
-/// The stages that run one after the other before the tests: the cheap and informative ones first.
-const FIRST: [Stage; 5] = [
-    ("formatting", formatting),
-    ("tidy", tidy),
-    ("clippy", clippy),
-    ("documentation", documentation),
-    ("build", build),
+type Stage = (When, &'static str, fn(&Runner) -> Outcome);
+
+const STAGES: [Stage; 16] = [
+    (When::First, "formatting", formatting),
+    (When::First, "tidy", tidy),
+    (When::First, "clippy", clippy),
+    (When::First, "documentation", documentation),
+    (When::First, "build", build),
+    (When::Tests, "tests", tests),
+    (When::Aside, "doctests", doctests),
+    (When::Aside, "peers", peers),
+    (When::Aside, "comparisons", comparisons::run),
+    (When::Aside, "python", python::run),
+    (When::Aside, "wasm32", wasm32),
+    (When::Named, "clusters", python::clusters),
+    (When::Named, "dist", dist::run),
+    (When::Named, "dist-again", dist::again),
+    (When::Named, "mutation", mutation),
+    (When::Named, "soak", soak),
 ];
-
-const TESTS: [Stage; 1] = [("tests", tests)];
-/// Stages that run one after the other in parallel with the tests, which do not occupy all
-/// processors; their output is shown at the end.
-const ASIDE: [Stage; 5] = [
-    ("doctests", doctests),
-    ("peers", peers),
-    ("comparisons", comparisons::run),
-    ("python", python::run),
-    ("wasm32", wasm32),
-];
-
-/// The stages that run only if they are named.
-const NAMED: [Stage; 3] = [("clusters", python::clusters), ("mutation", mutation), ("soak", soak)];
 
 /// The names of all stages.
 pub(crate) fn stage_names() -> impl Iterator<Item = &'static str> {
-    [&FIRST[..], &TESTS, &ASIDE, &NAMED].into_iter().flatten().map(|(name, _)| *name)
+    STAGES.iter().map(|(_, name, _)| *name)
 }
 
 /// Runs the named stages or, if none is named, all except those that run only if they are named;
@@ -86,7 +83,7 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
         eprintln!("no stage is called `{unknown}`; the stages are {}", names.join(", "));
         return false;
     }
-    let target = target(root);
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or(root.join("target"), |folder| root.join(folder));
     let path = target.join("aside.log");
     let log = match std::fs::create_dir_all(&target).and_then(|()| File::create(&path)) {
         Ok(log) => log,
@@ -95,27 +92,18 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
             return false;
         }
     };
-    let chosen = |stages: &[Stage], unnamed: bool| -> Vec<Stage> {
-        let is_chosen = |name: &str| if wanted.is_empty() { unnamed } else { wanted.contains(&name) };
-        stages.iter().filter(|(name, _)| is_chosen(name)).copied().collect()
-    };
     let shown = Runner { root, target: &target, settings: settings(&target), log: None };
     let runner = Runner { log: Some(&log), ..shown };
-    let mut results = shown.all(&chosen(&FIRST, true));
+    let mut results = shown.all(When::First, wanted);
     std::thread::scope(|scope| {
-        let aside = scope.spawn(|| runner.all(&chosen(&ASIDE, true)));
-        results.extend(shown.all(&chosen(&TESTS, true)));
+        let aside = scope.spawn(|| runner.all(When::Aside, wanted));
+        results.extend(shown.all(When::Tests, wanted));
         results.extend(aside.join().unwrap_or_default());
     });
     println!("\n{}", std::fs::read_to_string(&path).unwrap_or_default());
-    results.extend(shown.all(&chosen(&NAMED, false)));
+    results.extend(shown.all(When::Named, wanted));
     let is_strict = std::env::var_os("CI").is_some_and(|value| !value.is_empty());
     summary(&results, is_strict)
-}
-
-/// The folder in which cargo builds.
-fn target(root: &Path) -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or(root.join("target"), |folder| root.join(folder))
 }
 
 /// Settings of cargo for a build from scratch, which is faster if nothing is stored for a second
@@ -131,9 +119,11 @@ fn settings(target: &Path) -> &'static [(&'static str, &'static str)] {
 fn summary(results: &[(&str, Outcome, Duration)], strict: bool) -> bool {
     println!("{:<14}{:<9}{:>8}", "stage", "outcome", "seconds");
     for (name, outcome, time) in results {
-        println!("{name:<14}{:<9}{:>8.1}  {}", outcome.name(), time.as_secs_f64(), outcome.remark());
+        let (word, reason) = described(outcome);
+        println!("{name:<14}{word:<9}{:>8.1}  {reason}", time.as_secs_f64());
     }
-    let count = |wanted: &str| results.iter().filter(|(_, outcome, _)| outcome.name() == wanted).count();
+    let count =
+        |wanted: &str| results.iter().filter(|(_, outcome, _)| described(outcome).0 == wanted).count();
     let [passed, failed, skipped] = ["passed", "FAILED", "SKIPPED"].map(count);
     if strict && skipped > 0 {
         println!("`CI` is set: what is skipped counts as failed");
@@ -152,17 +142,25 @@ struct Runner<'a> {
 }
 
 impl Runner<'_> {
-    /// The outcomes of these stages, each with its duration.
-    fn all(&self, stages: &[Stage]) -> Vec<(&'static str, Outcome, Duration)> {
+    /// The outcomes of the stages of this time that are named or need no name, each with its
+    /// duration.
+    fn all(&self, time: When, wanted: &[&str]) -> Vec<(&'static str, Outcome, Duration)> {
+        let is_wanted = |name| wanted.contains(name) || (wanted.is_empty() && time != When::Named);
         let mut results = Vec::new();
-        for (name, stage) in stages {
+        for (_, name, stage) in STAGES.iter().filter(|(when, name, _)| *when == time && is_wanted(name)) {
             self.print(&format!("\n==== {name}"));
             let start = Instant::now();
             let outcome = stage(self);
-            self.print(&format!("==== {name}: {} {}", outcome.name(), outcome.remark()));
+            let (word, reason) = described(&outcome);
+            self.print(&format!("==== {name}: {word} {reason}"));
             results.push((*name, outcome, start.elapsed()));
         }
         results
+    }
+
+    /// Path of something in the folder in which cargo builds.
+    fn path(&self, name: &str) -> String {
+        self.target.join(name).to_string_lossy().into_owned()
     }
 
     fn print(&self, line: &str) {
@@ -183,10 +181,15 @@ impl Runner<'_> {
             command.stdin(Stdio::null()).stdout(out).stderr(errors);
         }
         match command.status() {
-            Ok(status) if status.success() => Outcome::Passed,
-            Ok(status) => Outcome::Failed(format!("`{line}`: {status}")),
-            Err(error) => Outcome::Failed(format!("`{line}`: {error}")),
+            Ok(status) if status.success() => Ok(()),
+            Ok(status) => Err(Problem::Failed(format!("`{line}`: {status}"))),
+            Err(error) => Err(Problem::Failed(format!("`{line}`: {error}"))),
         }
+    }
+
+    /// Runs the lines, whose words have a space between them, until one fails.
+    fn steps(&self, lines: &[String], variables: &[(&str, &str)]) -> Outcome {
+        lines.iter().try_for_each(|line| self.execute(&line.split(' ').collect::<Vec<_>>(), variables))
     }
 
     /// Runs cargo with these words.
@@ -195,7 +198,7 @@ impl Runner<'_> {
     }
 
     fn cargo_with(&self, line: &str, variables: &[(&str, &str)]) -> Outcome {
-        self.execute(&format!("cargo {line}").split(' ').collect::<Vec<_>>(), variables)
+        self.steps(&[format!("cargo {line}")], variables)
     }
 
     /// Runs a command of cargo for all packages, except the one that links CVODE if CVODE is
@@ -207,22 +210,19 @@ impl Runner<'_> {
 }
 
 fn formatting(runner: &Runner) -> Outcome {
-    match tools::component("rustfmt", "fmt") {
-        Ok(()) => runner.cargo("fmt --all --check"),
-        Err(missing) => Outcome::Failed(missing),
-    }
+    tools::component("rustfmt", "fmt")?;
+    runner.cargo("fmt --all --check")
 }
 
 fn tidy(runner: &Runner) -> Outcome {
-    if crate::tidy::is_tidy(runner.root) { Outcome::Passed } else { Outcome::Failed("see above".to_string()) }
+    let is_tidy = crate::tidy::is_tidy(runner.root);
+    is_tidy.then_some(()).ok_or_else(|| Problem::Failed("see above".to_string()))
 }
 
 /// Lints all targets with clippy.
 fn clippy(runner: &Runner) -> Outcome {
-    match tools::component("clippy", "clippy") {
-        Ok(()) => runner.workspace("clippy", "--all-targets -- -D warnings"),
-        Err(missing) => Outcome::Failed(missing),
-    }
+    tools::component("clippy", "clippy")?;
+    runner.workspace("clippy", "--all-targets -- -D warnings")
 }
 
 fn documentation(runner: &Runner) -> Outcome {
@@ -232,7 +232,8 @@ fn documentation(runner: &Runner) -> Outcome {
 /// Builds the tests, and the programs that the comparisons call.
 fn build(runner: &Runner) -> Outcome {
     let programs = "--bin phea --example reference_systems --example schema_cases";
-    runner.workspace("test", "--tests --no-run").and(|| runner.workspace("build", programs))
+    runner.workspace("test", "--tests --no-run")?;
+    runner.workspace("build", programs)
 }
 
 fn tests(runner: &Runner) -> Outcome {
@@ -245,21 +246,14 @@ fn doctests(runner: &Runner) -> Outcome {
 
 /// Builds for the browser the crates that only compute.
 fn wasm32(runner: &Runner) -> Outcome {
-    const TARGET: &str = "wasm32-unknown-unknown";
-    match tools::target(TARGET) {
-        Ok(()) => {
-            runner.cargo(&format!("check --target {TARGET} -p phea-machine -p phea-qft -p phea-quantity"))
-        }
-        Err(missing) => Outcome::Skipped(missing),
-    }
+    tools::target("wasm32-unknown-unknown")?;
+    runner.cargo("check --target wasm32-unknown-unknown -p phea-machine -p phea-qft -p phea-quantity")
 }
 
 /// Solves fifty rigs of each family with both phea and CVODE.
 fn peers(runner: &Runner) -> Outcome {
-    match tools::sundials() {
-        Ok(()) => runner.cargo("test --workspace --test random_rigs -- 50"),
-        Err(missing) => Outcome::Skipped(missing),
-    }
+    tools::sundials()?;
+    runner.cargo("test --workspace --test random_rigs -- 50")
 }
 
 /// Reads twenty times as many mutated projects as the tests do; part of [`soak`] too.
@@ -290,7 +284,7 @@ fn soak(runner: &Runner) -> Outcome {
         runner.cargo(rigs),
         comparisons::soak(runner),
     ];
-    let failed: Vec<&str> =
-        outcomes.iter().map(Outcome::remark).filter(|remark| !remark.is_empty()).collect();
-    if failed.is_empty() { Outcome::Passed } else { Outcome::Failed(failed.join("; ")) }
+    let reasons: Vec<&str> = outcomes.iter().map(|outcome| described(outcome).1).collect();
+    let failed = reasons.into_iter().filter(|reason| !reason.is_empty()).collect::<Vec<_>>().join("; ");
+    if failed.is_empty() { Ok(()) } else { Err(Problem::Failed(failed)) }
 }

@@ -18,6 +18,7 @@ usage: cargo xtask CHORE
 
   ci [STAGE]...    the test command: every stage, or only those named
   bench [build]    how long the command takes on the examples; with `build`, and to build from scratch
+  dist [--check]   the files of a release, in target/dist; with `--check`, built in another folder again and compared
   tidy [FOLDER]    the rules of the house that compiler and clippy do not know, here or in another checkout";
 
 fn main() -> ExitCode {
@@ -27,6 +28,8 @@ fn main() -> ExitCode {
         ["ci", stages @ ..] => ci::run(&root(), stages),
         ["bench"] => bench::run(&root(), false),
         ["bench", "build"] => bench::run(&root(), true),
+        ["dist"] => ci::run(&root(), &["dist"]),
+        ["dist", "--check"] => ci::run(&root(), &["dist", "dist-again"]),
         ["tidy"] => tidy::is_tidy(&root()),
         ["tidy", elsewhere] => tidy::is_tidy(Path::new(elsewhere)),
         _ => {

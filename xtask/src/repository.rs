@@ -54,11 +54,7 @@ impl Repository {
     }
 
     /// Files in this folder whose path has this ending, in the order of their paths.
-    pub(crate) fn texts<'a>(
-        &'a self,
-        folder: &'a str,
-        ending: &'a str,
-    ) -> impl Iterator<Item = (&'a str, &'a str)> {
+    pub(crate) fn texts(&self, folder: &str, ending: &str) -> impl Iterator<Item = (&str, &str)> {
         let texts = self.texts.iter().map(|(path, text)| (path.as_str(), text.as_str()));
         texts.filter(move |(path, _)| path.starts_with(folder) && path.ends_with(ending))
     }

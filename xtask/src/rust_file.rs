@@ -94,15 +94,13 @@ enum Inside {
 }
 
 fn lines(text: &str) -> Vec<Line> {
-    let mut lines = Vec::new();
     let mut inside = Inside::Code;
-    for (index, text) in text.lines().enumerate() {
+    let line = |(index, text): (usize, &str)| {
         let is_continued = inside != Inside::Code;
         let (code, texts) = code_and_texts_of(text, &mut inside);
-        let (number, text) = (index + 1, text.to_string());
-        lines.push(Line { number, text, code, texts, is_continued, is_test: false });
-    }
-    lines
+        Line { number: index + 1, text: text.to_string(), code, texts, is_continued, is_test: false }
+    };
+    text.lines().enumerate().map(line).collect()
 }
 
 /// The code and the string literals of a line that begins in this state.
@@ -190,12 +188,9 @@ pub(crate) fn numbers(code: &str) -> impl Iterator<Item = &str> {
 mod tests {
     use super::*;
 
-    fn code(text: &str) -> Vec<String> {
-        lines(text).into_iter().map(|line| line.code).collect()
-    }
-
     #[test]
     fn comments_and_texts_are_no_code() {
+        let code = |text| lines(text).into_iter().map(|line| line.code).collect::<Vec<String>>();
         assert_eq!(code("let a = \"// no\"; // f(\"x"), ["let a = \"; "]);
         assert_eq!(code("f(r#\"a\"b\"#, 'c', '\\'', '\"') -> &'a B"), ["f(r#\", , , ) -> &'a B"]);
         assert_eq!(code("f(\"one \\\" {\n  two }\", 3);"), ["f(\"", ", 3);"]);
@@ -205,10 +200,11 @@ mod tests {
     #[test]
     fn groups_are_expanded() {
         let text = "use std::{\n    fs,\n    time::{Instant as Now, Duration},\n};\nfn f() { g::h(x) }\n";
-        let file = RustFile::new("crates/a/src/lib.rs", text);
-        let found = paths(file.shipped());
-        for expected in [("std::fs", 2), ("std::time::Instant", 3), ("std::time::Duration", 3), ("g::h", 5)] {
-            assert!(found.contains(&(expected.0.to_string(), expected.1)), "{expected:?}: {found:?}");
+        let found = paths(RustFile::new("crates/a/src/lib.rs", text).shipped());
+        for (path, line) in
+            [("std::fs", 2), ("std::time::Instant", 3), ("std::time::Duration", 3), ("g::h", 5)]
+        {
+            assert!(found.contains(&(path.to_string(), line)), "{path}: {found:?}");
         }
     }
 

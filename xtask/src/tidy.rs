@@ -1,7 +1,6 @@
 //! The rules of the project that neither the compiler nor clippy knows, each a function from the
 //! repository's files to the places that break it.
 
-mod book;
 mod catalogue;
 mod circles;
 mod citation;
@@ -22,32 +21,18 @@ mod tests;
 mod units;
 mod wrapping;
 
-use std::fmt;
+use std::fmt::Display;
 use std::path::Path;
 
 use crate::repository::Repository;
 
-/// A place that breaks a rule.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Violation {
-    path: String,
-    line: usize,
-    message: String,
-}
+/// A place that breaks a rule, and how it breaks it.
+pub(crate) struct Violation(String);
 
 impl Violation {
     /// A violation at a line counted from 1; line 0 is the file as a whole.
-    fn new(path: &str, line: usize, message: impl Into<String>) -> Violation {
-        Violation { path: path.to_string(), line, message: message.into() }
-    }
-}
-
-impl fmt::Display for Violation {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.line {
-            0 => write!(formatter, "{}: {}", self.path, self.message),
-            line => write!(formatter, "{}:{line}: {}", self.path, self.message),
-        }
+    fn new(path: &str, line: usize, message: impl Display) -> Violation {
+        Violation(if line == 0 { format!("{path}: {message}") } else { format!("{path}:{line}: {message}") })
     }
 }
 
@@ -55,7 +40,7 @@ type Check = fn(&Repository) -> Vec<Violation>;
 
 /// Every check by its name.
 const CHECKS: &[(&str, Check)] = &[
-    ("book", book::check),
+    ("book", links::check_listed),
     ("catalogue", catalogue::check),
     ("circles", circles::check),
     ("dependencies", dependencies::check),
@@ -86,8 +71,8 @@ pub(crate) fn is_tidy(root: &Path) -> bool {
     };
     let mut count = 0;
     for (name, check) in CHECKS {
-        for violation in check(&repository) {
-            println!("{violation} [{name}]");
+        for Violation(text) in check(&repository) {
+            println!("{text} [{name}]");
             count += 1;
         }
     }

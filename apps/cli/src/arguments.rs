@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
 use phea_workbench::answer::TableFormat;
 use phea_workbench::command::IdentifiedPart;
 
@@ -196,6 +197,17 @@ pub(crate) enum Command {
         /// Add a chapter on the alternatives of the project; a controller is designed for each
         #[arg(long)]
         alternatives: bool,
+    },
+    /// Print the script by which a shell completes commands and options
+    Completions {
+        /// Shell that reads the script
+        shell: Shell,
+    },
+    /// Print the manual page of phea
+    Man {
+        /// Write the manual page of phea, and of each of its commands, into this folder
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
     },
 }
 

@@ -1,21 +1,8 @@
-//! The `phea` command: a thin shell over `phea_workbench`. It opens paths and prints; it computes
-//! nothing.
-
-mod arguments;
-mod changes;
-mod failure;
-mod interruption;
-mod messages;
-mod run;
+//! The program `phea`: the command line of its process, and the exit status.
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
 fn main() -> ExitCode {
-    interruption::survive_large_files();
-    match arguments::Arguments::try_parse() {
-        Ok(arguments) => run::run(arguments),
-        Err(error) => run::usage_error(&error),
-    }
+    let words: Vec<_> = std::env::args_os().collect();
+    ExitCode::from(phea_cli::run(&words))
 }

@@ -1,9 +1,9 @@
 mod campaign;
 mod identify;
 
+use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::error::ContextKind;
 use phea_files::{FileSystem, Folder, Inputs, expect_folder, reason, write, write_as};
@@ -21,10 +21,12 @@ use phea_workbench::source::Destination;
 
 use crate::arguments::{Arguments, Certified, Command, Common, Several};
 use crate::failure::{DONE, Failure, NO, WRONG_INPUT};
+use crate::installation::{TITLE_LINE, completions, manual_pages};
 use crate::interruption::Interruption;
 use crate::messages::{ProgressLine, print, print_error};
 
-pub(crate) fn run(arguments: Arguments) -> ExitCode {
+/// Runs a command and returns its exit status.
+pub(crate) fn run(arguments: Arguments) -> u8 {
     let outcome = match arguments.command {
         Command::New { folder } => new(&folder),
         Command::Schema { answers, out } => schema(answers, out.as_deref()),
@@ -82,17 +84,20 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Report { common, alternatives } => {
             on_project(&common, &Request::Report { files: common.out.is_some(), alternatives }, None)
         }
+        Command::Completions { shell } => print_file(&completions(shell)),
+        Command::Man { out } => manual(out.as_deref()),
     };
     exit_status(outcome)
 }
 
-/// An invalid command line, or one that requests help.
-pub(crate) fn usage_error(error: &clap::Error) -> ExitCode {
+/// Prints the reason why a command line is invalid, or the help that it requests, and returns the
+/// exit status.
+pub(crate) fn usage_error(error: &clap::Error, words: &[OsString]) -> u8 {
     if !error.use_stderr() {
         return exit_status(print(&error.render().to_string()).map(|()| DONE));
     }
     let number = misread_number(error);
-    if std::env::args_os().any(|argument| argument == "--json") {
+    if words.iter().any(|word| word == "--json") {
         let text = number.unwrap_or_else(|| error.to_string());
         let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
         let printed = print(&format!("{}\n", command::failure_json(None, None, message)));
@@ -104,7 +109,7 @@ pub(crate) fn usage_error(error: &clap::Error) -> ExitCode {
             let _ = error.print();
         }
     }
-    ExitCode::from(WRONG_INPUT)
+    WRONG_INPUT
 }
 
 /// The usage error of a value that is not a number, with the remedy; `None` for any other error.
@@ -127,11 +132,11 @@ fn misread_number(error: &clap::Error) -> Option<String> {
     Some(format!("error: {option} {value}: {words}"))
 }
 
-fn exit_status(outcome: Result<u8, Failure>) -> ExitCode {
-    ExitCode::from(outcome.unwrap_or_else(|failure| {
+fn exit_status(outcome: Result<u8, Failure>) -> u8 {
+    outcome.unwrap_or_else(|failure| {
         print_error(&failure.text);
         failure.status
-    }))
+    })
 }
 
 /// Writes the starter project into a folder that must be empty or absent.
@@ -159,20 +164,38 @@ const SCHEMA_KEY: &str = "\"$schema\"";
 fn schema(answers: bool, out: Option<&Path>) -> Result<u8, Failure> {
     let file = if answers { command::answers_schema() } else { command::schema() };
     match out {
-        Some(folder) => {
-            let path = folder.join(&file.name);
-            let known = std::fs::read_to_string(&path).unwrap_or_default();
-            if path.exists() && !known.contains(SCHEMA_KEY) {
-                let text = format!("{} exists and is not a schema; nothing was written", path.display());
-                return Err(Failure::wrong_input(format!("error: {text}")));
-            }
-            let written = write(folder, &[file], &Inputs::default());
-            let written = written.map_err(|message| Failure::not_written(&message))?;
-            print(&written_sentence(&written))?;
-        }
-        None => print(&String::from_utf8_lossy(&file.bytes))?,
+        Some(folder) => write_generated(folder, &[file], SCHEMA_KEY, "a schema"),
+        None => print_file(&file.bytes),
     }
-    Ok(DONE)
+}
+
+/// The manual page of the program, printed, or all pages written into a folder, where they replace
+/// nothing but pages of this manual.
+fn manual(out: Option<&Path>) -> Result<u8, Failure> {
+    let pages = manual_pages();
+    match (out, pages.first()) {
+        (Some(folder), _) => write_generated(folder, &pages, TITLE_LINE, "a manual page of phea"),
+        (None, first) => print_file(first.map_or(&[], |page| &page.bytes)),
+    }
+}
+
+fn print_file(bytes: &[u8]) -> Result<u8, Failure> {
+    print(&String::from_utf8_lossy(bytes)).map(|()| DONE)
+}
+
+/// Writes generated files into a folder; an older file is replaced only if it contains the mark of
+/// its kind.
+fn write_generated(folder: &Path, files: &[OutputFile], mark: &str, kind: &str) -> Result<u8, Failure> {
+    for path in files.iter().map(|file| folder.join(&file.name)) {
+        let known = std::fs::read_to_string(&path).unwrap_or_default();
+        if path.exists() && !known.contains(mark) {
+            let text = format!("{} exists and is not {kind}; nothing was written", path.display());
+            return Err(Failure::wrong_input(format!("error: {text}")));
+        }
+    }
+    let written = write(folder, files, &Inputs::default());
+    let written = written.map_err(|message| Failure::not_written(&message))?;
+    print(&written_sentence(&written)).map(|()| DONE)
 }
 
 /// Checks a certificate again.

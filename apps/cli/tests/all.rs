@@ -8,5 +8,6 @@ mod campaign_killed;
 mod exit_status;
 mod full_disk;
 mod inputs_protected;
+mod installation;
 mod stories;
 mod streamed_rows;

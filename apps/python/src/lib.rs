@@ -7,6 +7,7 @@ mod answer;
 mod bounds;
 mod chunks;
 mod columns;
+mod command_line;
 mod examples;
 mod failure;
 mod linear;
@@ -28,6 +29,8 @@ mod _native {
     use crate::chunks::{CampaignTable, campaign_lines};
     #[pymodule_export]
     use crate::columns::columns;
+    #[pymodule_export]
+    use crate::command_line::run_command;
     #[pymodule_export]
     use crate::examples::examples;
     #[pymodule_export]

@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from conftest import EXAMPLES, PACKAGE
+from conftest import EXAMPLES
 
 WRONG_CALLS = Path(__file__).parent / "typing/wrong_calls.py"
 # Names of the extension that its description may lack.
@@ -17,7 +17,7 @@ UNDESCRIBED = "phea._native.__all__\n"
 
 def errors(checked: Path, folder: Path) -> list[tuple[int, str]]:
     """Lines and codes of the errors that the strict type checker finds."""
-    options = ["--config-file", str(PACKAGE / "pyproject.toml"), "--strict", "--output", "json"]
+    options = ["--config-file", str(EXAMPLES.parent / "pyproject.toml"), "--strict", "--output", "json"]
     options += ["--cache-dir", str(folder / "cache")]
     run = subprocess.run(
         [sys.executable, "-m", "mypy", *options, str(checked)],

@@ -1,8 +1,6 @@
 //! Comparisons with other tools and recomputed numbers, in Python, in their own virtual
 //! environment.
 
-use std::path::Path;
-
 use super::{Outcome, Runner, tools};
 
 /// Folders, and the beginnings of the names of the scripts to run.
@@ -27,55 +25,46 @@ pub(super) fn run(runner: &Runner) -> Outcome {
     }
     scripts.retain(|script| !LONG.contains(&script.as_str()));
     scripts.sort();
-    let scripts: Vec<&str> = scripts.iter().map(String::as_str).collect();
-    let profile = runner.target.join("debug");
-    environment(runner)
-        .and(|| python(runner, &profile, &[&["comparisons/together.py"][..], &scripts].concat()))
+    environment(runner)?;
+    python(runner, "debug", &format!("comparisons/together.py {}", scripts.join(" ")))
 }
 
 /// Runs the scripts that are otherwise left out, with the phea of the release profile.
 pub(super) fn soak(runner: &Runner) -> Outcome {
-    let profile = runner.target.join("release");
-    let jobs = std::thread::available_parallelism().map_or(1, usize::from).to_string();
-    environment(runner)
-        .and(|| python(runner, &profile, &["comparisons/recompute_design.py"]))
-        // fifty valves, identified by phea and by SciPy
-        .and(|| python(runner, &profile, &["comparisons/compare_identify.py", "--sets", "50"]))
-        // four hundred recordings, made in Python, of each valve
-        .and(|| {
-            let recorded = ["--seeds", "400", "--verified", "20", "--jobs", &jobs];
-            python(runner, &profile, &[&["comparisons/compare_valves.py"][..], &recorded].concat())
-        })
+    let jobs = std::thread::available_parallelism().map_or(1, usize::from);
+    environment(runner)?;
+    python(runner, "release", "comparisons/recompute_design.py")?;
+    // fifty valves, identified by phea and by SciPy
+    python(runner, "release", "comparisons/compare_identify.py --sets 50")?;
+    // four hundred recordings, made in Python, of each valve
+    let valves = "comparisons/compare_valves.py --seeds 400 --verified 20 --jobs";
+    python(runner, "release", &format!("{valves} {jobs}"))
 }
 
 /// Runs Python with the programs of this profile.
-fn python(runner: &Runner, profile: &Path, arguments: &[&str]) -> Outcome {
-    let path = |path: &Path| path.to_string_lossy().into_owned();
+fn python(runner: &Runner, profile: &str, arguments: &str) -> Outcome {
+    let program = |name: &str| runner.path(&format!("{profile}/{name}"));
     // The libraries below NumPy would use every core for matrices of a few rows, and the system
     // would clear the memory of each large array again.
     let variables = [
         ("OPENBLAS_NUM_THREADS", "1".to_string()),
         ("MALLOC_MMAP_THRESHOLD_", "1000000000".to_string()),
         ("MALLOC_TRIM_THRESHOLD_", "1000000000".to_string()),
-        ("PYTHONPYCACHEPREFIX", path(&runner.target.join("pycache"))),
-        ("PHEA", path(&profile.join("phea"))),
-        ("REFERENCE_SYSTEMS", path(&profile.join("examples").join("reference_systems"))),
-        ("SCHEMA_CASES", path(&profile.join("examples").join("schema_cases"))),
+        ("PYTHONPYCACHEPREFIX", runner.path("pycache")),
+        ("PHEA", program("phea")),
+        ("REFERENCE_SYSTEMS", program("examples/reference_systems")),
+        ("SCHEMA_CASES", program("examples/schema_cases")),
     ];
-    let variables: Vec<(&str, &str)> =
-        variables.iter().map(|(name, value)| (*name, value.as_str())).collect();
-    runner.execute(&[&[PYTHON][..], arguments].concat(), &variables)
+    let variables = variables.each_ref().map(|(name, value)| (*name, value.as_str()));
+    runner.steps(&[format!("{PYTHON} {arguments}")], &variables)
 }
 
 /// Creates the virtual environment with the packages that the scripts need.
 fn environment(runner: &Runner) -> Outcome {
-    if let Err(missing) = tools::python() {
-        return Outcome::Failed(missing);
+    tools::python()?;
+    if !runner.root.join(PYTHON).exists() {
+        runner.steps(&["python3 -m venv --clear target/venv".to_string()], &[])?;
     }
     let install = "-m pip install --quiet --no-compile -r comparisons/requirements.txt";
-    let make = || match runner.root.join(PYTHON).exists() {
-        true => Outcome::Passed,
-        false => runner.execute(&["python3", "-m", "venv", "--clear", "target/venv"], &[]),
-    };
-    make().and(|| runner.execute(&[&[PYTHON][..], &install.split(' ').collect::<Vec<_>>()].concat(), &[]))
+    runner.steps(&[format!("{PYTHON} {install}")], &[])
 }

@@ -4,11 +4,8 @@ use super::{Outcome, Runner, tools};
 
 /// Builds the wheel, installs it and tests it.
 pub(super) fn run(runner: &Runner) -> Outcome {
-    if let Err(missing) = tools::python() {
-        return Outcome::Failed(missing);
-    }
-    let path = |name: &str| runner.target.join(name).to_string_lossy().into_owned();
-    let [environment, wheels, phea] = ["python", "wheels", "debug/phea"].map(path);
+    tools::python()?;
+    let [environment, wheels, phea] = ["python", "wheels", "debug/phea"].map(|name| runner.path(name));
     let [python, maturin] = ["python", "maturin"].map(|name| format!("{environment}/bin/{name}"));
     let wheel = format!("build --quiet --profile dev -m apps/python/Cargo.toml --out {wheels}");
     let steps = [
@@ -17,10 +14,10 @@ pub(super) fn run(runner: &Runner) -> Outcome {
         format!("{python} apps/python/generate_answers.py --check"),
         format!("{maturin} {wheel}"),
         format!("{python} -m pip install --quiet --no-index --find-links {wheels} phea"),
-        format!("{python} -m mypy --config-file apps/python/pyproject.toml -p phea"),
-        format!("{python} -m mypy --config-file apps/python/pyproject.toml apps/python/tests"),
+        format!("{python} -m mypy --config-file pyproject.toml -p phea"),
+        format!("{python} -m mypy --config-file pyproject.toml apps/python/tests"),
         format!(
-            "{python} -m pytest --quiet -c apps/python/pyproject.toml apps/python/tests \
+            "{python} -m pytest --quiet -c pyproject.toml apps/python/tests \
              --ignore apps/python/tests/clusters"
         ),
     ];
@@ -28,23 +25,16 @@ pub(super) fn run(runner: &Runner) -> Outcome {
     let _ = std::fs::remove_dir_all(&wheels);
     let bin = format!("{environment}/bin:{}", std::env::var("PATH").unwrap_or_default());
     let variables = [("PHEA_COMMAND", phea.as_str()), ("VIRTUAL_ENV", &environment), ("PATH", &bin)];
-    all(runner, &steps, &variables)
+    runner.steps(&steps, &variables)
 }
 
 /// Runs campaigns on Dask and on Ray, in the environment that [`run`] leaves.
 pub(super) fn clusters(runner: &Runner) -> Outcome {
-    let python = runner.target.join("python/bin/python").to_string_lossy().into_owned();
+    let python = runner.path("python/bin/python");
     let steps = [
         format!("{python} -m pip install --quiet distributed==2026.8.0 ray==2.60.0"),
         format!("{python} -m pytest --quiet --doctest-modules --pyargs phea"),
-        format!("{python} -m pytest --quiet -c apps/python/pyproject.toml apps/python/tests/clusters"),
+        format!("{python} -m pytest --quiet -c pyproject.toml apps/python/tests/clusters"),
     ];
-    all(runner, &steps, &[])
-}
-
-/// Runs commands until one fails.
-fn all(runner: &Runner, steps: &[String], variables: &[(&str, &str)]) -> Outcome {
-    steps.iter().fold(Outcome::Passed, |outcome, step| {
-        outcome.and(|| runner.execute(&step.split(' ').collect::<Vec<_>>(), variables))
-    })
+    runner.steps(&steps, &[])
 }

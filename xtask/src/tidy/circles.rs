@@ -12,18 +12,16 @@ type Uses = BTreeMap<String, BTreeSet<String>>;
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let mut crates: BTreeMap<&str, Vec<&RustFile>> = BTreeMap::new();
-    for file in repository.rust_files.iter().filter(|file| file.is_shipped()) {
-        if let Some((folder, _)) = file.path.split_once("/src/").filter(|_| file.path.starts_with("crates/"))
-        {
-            crates.entry(folder).or_default().push(file);
-        }
+    let is_library = |file: &&RustFile| file.is_shipped() && file.path.starts_with("crates/");
+    for file in repository.rust_files.iter().filter(is_library) {
+        let folder = file.path.split_once("/src/").map(|(folder, _)| folder);
+        crates.entry(folder.unwrap_or_default()).or_default().push(file);
     }
     let mut found = Vec::new();
     for (folder, files) in crates {
-        for circle in circles(&uses(&files)) {
-            let message = format!("these modules use each other in a circle: {}", circle.join(", "));
-            found.push(Violation::new(folder, 0, message));
-        }
+        let circles = circles(&uses(&files)).into_iter().map(|modules| modules.join(", "));
+        let message = |modules| format!("these modules use each other in a circle: {modules}");
+        found.extend(circles.map(|modules| Violation::new(folder, 0, message(modules))));
     }
     found
 }
@@ -64,22 +62,17 @@ fn modules(file: &RustFile) -> Vec<&str> {
 }
 
 fn uses(files: &[&RustFile]) -> Uses {
-    let tops: BTreeSet<&str> = files.iter().filter_map(|file| modules(file).first().copied()).collect();
-    let mut owners: BTreeMap<&str, &str> = BTreeMap::new();
-    for file in files {
-        if let Some(&top) = modules(file).first() {
-            owners.extend(types(file).map(|(name, _)| (name, top)));
-        }
-    }
+    let inner = || files.iter().filter_map(|file| Some((*modules(file).first()?, *file)));
+    // a module, or a type by which the root exports a module
+    let mut owners: BTreeMap<&str, &str> =
+        inner().flat_map(|(top, file)| types(file).map(move |(name, _)| (name, top))).collect();
+    owners.extend(inner().map(|(top, _)| (top, top)));
     let mut uses = Uses::new();
-    for file in files {
-        let own = modules(file);
-        let Some(&top) = own.first() else { continue };
+    for (top, file) in inner() {
+        let others = uses.entry(top.to_string()).or_default();
         for (path, _) in paths(file.shipped()) {
-            let used = used_module(&path, own.len())
-                .and_then(|first| tops.get(first).copied().or_else(|| owners.get(first).copied()));
-            let others = uses.entry(top.to_string()).or_default();
-            others.extend(used.filter(|other| *other != top).map(String::from));
+            let used = used_module(&path, modules(file).len()).and_then(|name| owners.get(name));
+            others.extend(used.filter(|other| **other != top).map(|other| other.to_string()));
         }
     }
     uses
@@ -88,17 +81,11 @@ fn uses(files: &[&RustFile]) -> Uses {
 /// Name of a path directly below the root, from a file `depth` modules below it: a module, or a
 /// type that the root exports.
 fn used_module(path: &str, depth: usize) -> Option<&str> {
-    let mut parts = path.split("::").peekable();
-    let first = *parts.peek()?;
-    let mut above = 0;
-    while parts.next_if(|part| *part == "super").is_some() {
-        above += 1;
+    let above = path.split("::").take_while(|part| *part == "super").count();
+    match path.strip_prefix("crate::") {
+        Some(below) => below.split("::").next(),
+        None => path.split("::").nth(above).filter(|_| above == depth),
     }
-    let is_root = first == "crate" || above == depth;
-    if first == "crate" {
-        parts.next();
-    }
-    parts.next().filter(|_| is_root)
 }
 
 /// Modules that reach themselves through others, together with those.

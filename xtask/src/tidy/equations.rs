@@ -31,8 +31,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
         found.extend(vocabulary.unknown(INDEX, row.line, &row.spans("implemented by")));
         found.extend(missing_formula(repository, &row));
     }
-    let sources = repository.texts("crates/", ".rs");
-    for (path, text) in sources {
+    for (path, text) in repository.texts("crates/", ".rs") {
         for (index, line) in text.lines().enumerate() {
             for (chapter, number) in cited(line).into_iter().filter(|cited| !known.contains(cited)) {
                 let message = format!("cites {chapter}.{number}, which {INDEX} does not list");
@@ -50,16 +49,11 @@ fn missing_formula(repository: &Repository, row: &Row<'_>) -> Vec<Violation> {
         let message = "a row states the beginning of one formula, and one file, each in a code span";
         return vec![Violation::new(INDEX, row.line, message)];
     };
-    let wanted = spaced(formula);
-    let text = source(repository, file).unwrap_or_default();
-    let holds = fenced(text).any(|line| spaced(line).contains(&wanted));
-    let message = || format!("`{formula}` stands in no `text` fence of `{file}`");
-    (!holds).then(|| Violation::new(INDEX, row.line, message())).into_iter().collect()
-}
-
-/// The words of a line with one space between them.
-fn spaced(line: &str) -> String {
-    line.split_whitespace().collect::<Vec<_>>().join(" ")
+    let spaced = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
+    let holds = |text| fenced(text).any(|line| spaced(line).contains(&spaced(formula)));
+    let message = || format!("`{formula}` is in no `text` fence of `{file}`");
+    let is_missing = !source(repository, file).is_some_and(holds);
+    is_missing.then(|| Violation::new(INDEX, row.line, message())).into_iter().collect()
 }
 
 /// The source with this name in the index.
@@ -73,7 +67,8 @@ fn misplaced(repository: &Repository, row: &Row<'_>, equations: &[Equation]) -> 
     let mut found = Vec::new();
     let mut held = BTreeSet::new();
     for name in row.spans("in") {
-        let formulae = source(repository, name).map(formulae).unwrap_or_default();
+        let text = source(repository, name).unwrap_or_default();
+        let formulae: BTreeSet<Equation> = fenced(text).flat_map(cited).collect();
         if !equations.iter().any(|equation| formulae.contains(equation)) {
             let message = format!("`{name}` has none of these equations in a `text` fence");
             found.push(Violation::new(INDEX, row.line, message));
@@ -82,15 +77,10 @@ fn misplaced(repository: &Repository, row: &Row<'_>, equations: &[Equation]) -> 
     }
     let missing = equations.iter().filter(|equation| !held.contains(equation));
     found.extend(missing.map(|(chapter, number)| {
-        let message = format!("{chapter}.{number} stands in no `text` fence of the files in column `in`");
+        let message = format!("{chapter}.{number} is in no `text` fence of the files in column `in`");
         Violation::new(INDEX, row.line, message)
     }));
     found
-}
-
-/// The equations cited within the `text` fences of a file's comments.
-fn formulae(text: &str) -> BTreeSet<Equation> {
-    fenced(text).flat_map(cited).collect()
 }
 
 /// The lines within the `text` fences of a file's comments.

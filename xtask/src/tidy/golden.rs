@@ -52,7 +52,9 @@ fn check_file(file: &RustFile) -> Vec<Violation> {
             continue;
         }
         let end = file.end_of_item(start);
-        let above = file.lines[..start].iter().rev().take_while(|line| is_above_an_item(line));
+        // comments and attributes
+        let is_above = |line: &&Line| ["//", "#["].iter().any(|mark| line.text.trim().starts_with(mark));
+        let above = file.lines[..start].iter().rev().take_while(is_above);
         let has_origin = above.chain(&file.lines[start..=end]).any(|line| line.text.contains("ORIGIN:"));
         if !has_origin && has_golden_number(file, start, end) {
             found.push(Violation::new(&file.path, line.number, "golden numbers without an ORIGIN"));
@@ -66,12 +68,6 @@ fn is_item(code: &str) -> bool {
     let words = code.trim().trim_start_matches("pub(super) ").trim_start_matches("pub(crate) ");
     let words = words.trim_start_matches("pub ");
     ["fn ", "const ", "static "].iter().any(|keyword| words.starts_with(keyword))
-}
-
-/// Returns true for a comment, an attribute or a part of one.
-fn is_above_an_item(line: &Line) -> bool {
-    let text = line.text.trim();
-    text.starts_with("//") || text.starts_with("#[")
 }
 
 /// Returns true if these lines, or assertions among them, have a number of four digits or more.
@@ -106,16 +102,7 @@ mod tests {
 
     #[test]
     fn digits_are_counted() {
-        for (literal, digits) in [
-            ("2.233e6", 4),
-            ("2.233e", 4),
-            ("0.00025", 2),
-            ("1000.0", 1),
-            ("12.70", 4),
-            ("1e", 1),
-            ("2233000", 0),
-        ] {
-            assert_eq!(significant_digits(literal), digits, "{literal}");
-        }
+        let literals = ["2.233e6", "2.233e", "0.00025", "1000.0", "12.70", "1e", "2233000"];
+        assert_eq!(literals.map(significant_digits), [4, 4, 2, 1, 4, 1, 0]);
     }
 }

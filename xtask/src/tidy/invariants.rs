@@ -14,8 +14,11 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     for (line, item) in invariants(repository.text(DOCUMENT).unwrap_or_default()) {
         let named = item.split_once(ENFORCED).map(|(_, after)| code_spans(after)).unwrap_or_default();
         if named.is_empty() {
-            let message = format!("an invariant without \"{ENFORCED}\" and a name");
-            found.push(Violation::new(DOCUMENT, line, message));
+            found.push(Violation::new(
+                DOCUMENT,
+                line,
+                format!("an invariant without \"{ENFORCED}\" and a name"),
+            ));
         }
         for name in named.into_iter().filter(|name| !enforces(repository, name)) {
             let message = format!("`{name}` is no tidy check, no stage, no file and no test");

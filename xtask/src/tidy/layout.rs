@@ -16,12 +16,10 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
 fn unbuilt_tests(repository: &Repository) -> Vec<Violation> {
     let tested = repository.texts("", ".rs").filter(|(_, text)| text.contains("#[cfg(test)]"));
     let unbuilt = tested.filter_map(|(path, _)| {
-        let (package, _) = path.split_once("/src/")?;
-        let manifest = repository.text(&format!("{package}/Cargo.toml"))?;
-        let is_built =
-            !manifest.split("\n[").any(|part| part.starts_with("lib]") && part.contains("\ntest = false"));
-        (!is_built)
-            .then(|| Violation::new(path, 0, format!("its tests are never built: see {package}/Cargo.toml")))
+        let manifest = format!("{}/Cargo.toml", path.split_once("/src/")?.0);
+        let mut parts = repository.text(&manifest)?.split("\n[");
+        let is_unbuilt = parts.any(|part| part.starts_with("lib]") && part.contains("\ntest = false"));
+        is_unbuilt.then(|| Violation::new(path, 0, format!("its tests are never built: see {manifest}")))
     });
     unbuilt.collect()
 }
@@ -32,22 +30,14 @@ fn unnamed_tests(repository: &Repository) -> Vec<Violation> {
     let unnamed = tests.filter_map(|(path, _)| {
         let (folder, name) = path.trim_end_matches(".rs").rsplit_once('/')?;
         let parent =
-            if folder.ends_with("/tests") { format!("{folder}/all.rs") } else { format!("{folder}.rs") };
-        if parent == path || !repository.exists(&format!("{}/tests/all.rs", path.split_once("/tests/")?.0)) {
-            return None;
-        }
-        let declared = repository.text(&parent).is_some_and(|text| declares(text, name));
-        (!declared).then(|| Violation::new(path, 0, format!("lacks `mod {name};` in {parent}")))
+            if folder.ends_with("/tests") { format!("{folder}/all") } else { folder.to_string() } + ".rs";
+        let has_parent = repository.exists(&format!("{}/tests/all.rs", path.split_once("/tests/")?.0));
+        let declares = |line: &str| line.contains("mod ") && line.ends_with(&format!(" {name};"));
+        let declared = || repository.text(&parent).is_some_and(|text| text.lines().any(declares));
+        let is_lost = has_parent && parent != path && !declared();
+        is_lost.then(|| Violation::new(path, 0, format!("lacks `mod {name};` in {parent}")))
     });
     unnamed.collect()
-}
-
-fn declares(text: &str, name: &str) -> bool {
-    text.lines().any(|line| {
-        line.strip_suffix(';').is_some_and(|line| {
-            line.rsplit(char::is_whitespace).next() == Some(name) && line.contains("mod ")
-        })
-    })
 }
 
 fn check_name(path: &str) -> Option<Violation> {

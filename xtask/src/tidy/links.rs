@@ -1,5 +1,5 @@
 //! Every path and link that a document names exists, in prose, in code spans and in the commands of
-//! console blocks.
+//! console blocks. The book's table of contents lists every page, and the README every story.
 
 use super::Violation;
 use crate::repository::Repository;
@@ -7,58 +7,66 @@ use crate::repository::Repository;
 /// Folders at the root; a code span that begins with one of them counts as a path.
 const FOLDERS: [&str; 7] = ["crates/", "apps/", "book/", "examples/", "xtask/", "comparisons/", ".ci/"];
 
+/// Pages that the table of contents lacks, and stories that the README lacks.
+pub(super) fn check_listed(repository: &Repository) -> Vec<Violation> {
+    let unlisted = |path: &str, document: &str, link: &str| {
+        let is_listed = repository.text(document).is_some_and(|text| text.contains(&format!("]({link})")));
+        let message = format!("is not listed in {document}");
+        (!is_listed && path != document).then(|| Violation::new(path, 0, message))
+    };
+    let pages =
+        repository.texts("book/src/", ".md").map(|(path, _)| (path, path.trim_start_matches("book/src/")));
+    let pages = pages.filter_map(|(path, link)| unlisted(path, "book/src/SUMMARY.md", link));
+    let stories = repository.texts("examples/", ".md").filter(|(_, text)| text.contains("```console"));
+    pages.chain(stories.filter_map(|(path, _)| unlisted(path, "README.md", path))).collect()
+}
+
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     repository.texts("", ".md").flat_map(|(path, text)| check_document(repository, path, text)).collect()
 }
 
 fn check_document(repository: &Repository, path: &str, text: &str) -> Vec<Violation> {
+    let missing = |number, target: &str| Violation::new(path, number, format!("`{target}` does not exist"));
     let mut found = Vec::new();
     for (number, line) in prose_lines(text) {
-        let links =
-            link_targets(line).into_iter().map(|target| (check_link(repository, path, target), target));
-        let spans = code_spans(line).into_iter().map(|span| (check_span(repository, span), span));
-        let broken = links.chain(spans).filter(|(fine, _)| !fine);
-        found.extend(
-            broken.map(|(_, target)| Violation::new(path, number, format!("`{target}` does not exist"))),
-        );
+        let links = link_targets(line).filter(|target| !check_link(repository, path, target));
+        let spans = code_spans(line).into_iter().filter(|span| !check_span(repository, span));
+        found.extend(links.chain(spans).map(|target| missing(number, target)));
     }
     // Stories run in their own folders; the files that they name are checked when they run.
     for (number, line) in commands(text).filter(|_| !path.starts_with("examples/")) {
         let lost = line.split_whitespace().filter(|word| !check_span(repository, word));
-        found.extend(lost.map(|word| Violation::new(path, number, format!("`{word}` does not exist"))));
+        found.extend(lost.map(|word| missing(number, word)));
     }
     found
 }
 
 /// The commands in console blocks: lines that start with a dollar sign.
 fn commands(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let mut console = false;
-    text.lines().enumerate().filter_map(move |(index, line)| {
-        if line.trim_start().starts_with("```") {
-            console = !console && line.trim() == "```console";
-        }
-        line.strip_prefix("$ ").filter(|_| console).map(|command| (index + 1, command))
-    })
+    let console = fenced_lines(text).filter(|(_, _, fence)| *fence == Some("```console"));
+    console.filter_map(|(number, line, _)| Some((number, line.strip_prefix("$ ")?)))
 }
 
 /// The lines outside fenced code, with their numbers.
 pub(super) fn prose_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let mut fenced = false;
+    fenced_lines(text).filter(|(_, _, fence)| fence.is_none()).map(|(number, line, _)| (number, line))
+}
+
+/// The lines except the fences of code, with their numbers, and the fence above those between two.
+fn fenced_lines(text: &str) -> impl Iterator<Item = (usize, &str, Option<&str>)> {
+    let mut open = None;
     text.lines().enumerate().filter_map(move |(index, line)| {
-        let fence = line.trim_start().starts_with("```");
-        let prose = !fenced && !fence;
-        fenced ^= fence;
-        prose.then_some((index + 1, line))
+        let is_fence = line.trim_start().starts_with("```");
+        if is_fence {
+            open = if open.is_none() { Some(line.trim()) } else { None };
+        }
+        (!is_fence).then_some((index + 1, line, open))
     })
 }
 
 /// The targets of `[text](target)`.
-fn link_targets(line: &str) -> Vec<&str> {
-    let after = line.split("](").skip(1);
-    after
-        .filter_map(|rest| rest.split(')').next())
-        .map(|target| target.split(' ').next().unwrap_or(target))
-        .collect()
+fn link_targets(line: &str) -> impl Iterator<Item = &str> {
+    line.split("](").skip(1).filter_map(|rest| rest.split([')', ' ']).next())
 }
 
 /// Texts between single backticks.
@@ -84,9 +92,7 @@ fn resolved(from: &str, target: &str) -> String {
     for part in target.split('/') {
         match part {
             "" | "." => {}
-            ".." => {
-                parts.pop();
-            }
+            ".." => drop(parts.pop()),
             name => parts.push(name),
         }
     }

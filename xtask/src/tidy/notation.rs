@@ -23,13 +23,11 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let mut named = BTreeSet::new();
     for row in tables(text, "identifier") {
         let identifiers = row.spans("identifier");
-        if identifiers.is_empty() {
-            found.push(Violation::new(DOCUMENT, row.line, "a row without an identifier"));
-        }
-        if row.cell("SI unit").is_empty() {
-            let message = "a row without a unit (write 1 for a plain number)";
-            found.push(Violation::new(DOCUMENT, row.line, message));
-        }
+        let without_identifier = identifiers.is_empty().then_some("a row without an identifier");
+        let without_unit = "a row without a unit (write 1 for a plain number)";
+        let without_unit = row.cell("SI unit").is_empty().then_some(without_unit);
+        let messages = without_identifier.into_iter().chain(without_unit);
+        found.extend(messages.map(|message| Violation::new(DOCUMENT, row.line, message)));
         found.extend(vocabulary.unknown(DOCUMENT, row.line, &identifiers));
         named.extend(identifiers);
     }

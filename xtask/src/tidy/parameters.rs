@@ -18,9 +18,9 @@ pub(super) struct Parameter<'a> {
 /// Parameters in the order of the files.
 pub(super) fn parameters(repository: &Repository) -> Vec<Parameter<'_>> {
     // a key is explained by its description
-    let is_physics = |path: &str| path.starts_with("crates/hydraulics/src/") && !path.ends_with("keys.rs");
-    let is_physics = |file: &&RustFile| is_physics(&file.path) && file.is_shipped();
-    let files: Vec<&RustFile> = repository.rust_files.iter().filter(is_physics).collect();
+    let is_equations = |path: &str| path.starts_with("crates/hydraulics/src/") && !path.ends_with("keys.rs");
+    let shipped = repository.rust_files.iter().filter(|file| file.is_shipped());
+    let files: Vec<&RustFile> = shipped.filter(|file| is_equations(&file.path)).collect();
     let mut definitions: Vec<Definition> = files.iter().flat_map(|file| definitions(file)).collect();
     let mut refusable: BTreeSet<&str> = files.iter().flat_map(|file| with_problems(file)).collect();
     let mut count = 0;
@@ -39,14 +39,9 @@ fn with_problems(file: &RustFile) -> Vec<&str> {
     let mut owner = "";
     let mut found = Vec::new();
     for line in file.shipped() {
-        if line.code.starts_with("impl") {
-            let head = line.code.trim_end_matches(" {").trim_start_matches("impl");
-            let kind = if head.starts_with('<') {
-                head.split_once("> ").map_or(head, |(_, kind)| kind)
-            } else {
-                head
-            };
-            owner = words(kind).next().unwrap_or_default();
+        if let Some(head) = line.code.strip_prefix("impl") {
+            let generic = head.split_once("> ").filter(|_| head.starts_with('<'));
+            owner = words(generic.map_or(head, |(_, kind)| kind)).next().unwrap_or_default();
         }
         if line.code.contains("fn problems(") {
             found.push(owner);

@@ -38,9 +38,8 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
         for (path, line) in paths(file.shipped()) {
             let rules = FOR_LIBRARIES.iter().chain(FOR_LOWER_CRATES.iter().filter(|_| is_lower));
             let rules = rules.filter(|(forbidden, _)| is_below(&path, forbidden) && !is_below(&path, SHARED));
-            found.extend(rules.map(|(forbidden, reason)| {
-                Violation::new(&file.path, line, format!("uses {forbidden}: {reason}"))
-            }));
+            let message = |forbidden, reason| format!("uses {forbidden}: {reason}");
+            found.extend(rules.map(|(item, reason)| Violation::new(&file.path, line, message(item, reason))));
         }
     }
     found

@@ -22,13 +22,12 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let mut found = Vec::new();
     let elsewhere = repository.rust_files.iter().filter(|file| !file.path.starts_with(HOME));
     for file in elsewhere.filter(|file| file.is_shipped()) {
-        for line in file.shipped() {
-            for number in numbers(&line.code) {
-                for (_, unit) in FACTORS.iter().filter(|(factor, _)| has_digits_of(number, *factor)) {
-                    let message = format!("{number} converts {unit}: conversions belong to {HOME}");
-                    found.push(Violation::new(&file.path, line.number, message));
-                }
-            }
+        let numbers =
+            file.shipped().flat_map(|line| numbers(&line.code).map(move |number| (line.number, number)));
+        for (line, number) in numbers {
+            let units = FACTORS.iter().filter(|(factor, _)| has_digits_of(number, *factor));
+            let message = |unit| format!("{number} converts {unit}: conversions belong to {HOME}");
+            found.extend(units.map(|(_, unit)| Violation::new(&file.path, line, message(unit))));
         }
     }
     found

@@ -12,9 +12,8 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
             let comment = line.text.trim_start().strip_prefix("//")?;
             Some((line.number, line.text.as_str(), comment.trim_start_matches(['/', '!'])))
         });
-        found.extend(
-            wide(comments).map(|line| Violation::new(&file.path, line, "a comment of more than 100 columns")),
-        );
+        let message = "a comment of more than 100 columns";
+        found.extend(wide(comments).map(|line| Violation::new(&file.path, line, message)));
     }
     for (path, text) in repository.texts("", ".md") {
         let prose = text.lines().enumerate().map(|(index, line)| (index + 1, line, line));

@@ -128,6 +128,7 @@ class Family:
         self,
     ) -> list[tuple[str, NDArray[np.float64], NDArray[np.complex128]]]: ...
 
+def run_command(words: list[str]) -> int: ...
 def campaign_lines(
     project: Project,
     seed: int,
