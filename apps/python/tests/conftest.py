@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
-PACKAGE = Path(__file__).parents[1]
 
 
 @pytest.fixture(scope="session")
