@@ -32,10 +32,7 @@ pub(crate) fn run(arguments: Arguments) -> u8 {
         Command::Schema { answers, out } => schema(answers, out.as_deref()),
         Command::Check(common) => on_project(&common, &Request::Check, None),
         Command::Size { common, gain, length } => on_project(&common, &Request::Size { gain, length }, None),
-        Command::Linearize { common, sweep, points } => {
-            let sweep = sweep.map(|range| SweepRequest { range, points });
-            on_project(&common, &Request::Linearize { sweep }, None)
-        }
+        Command::Linearize { common, sweep, points } => linearize(&common, sweep, points),
         Command::Verify { common, on_machine, prove, certificate } => {
             let request = Request::Verify { proof: prove || certificate.is_some(), on_machine };
             on_project(&common, &request, certificate.as_deref())
@@ -72,8 +69,8 @@ pub(crate) fn run(arguments: Arguments) -> u8 {
         Command::Compare(several) => print_answer(several.json, compared(&several)),
         Command::Alternatives { common, front, sweep, points, frequencies } => {
             let files = common.out.is_some();
-            let request = AlternativesRequest { files, front, sweep, points, frequencies };
-            on_project(&common, &Request::Alternatives(request), None)
+            let requested = AlternativesRequest { files, front, sweep, points, frequencies };
+            on_project(&common, &Request::Alternatives(requested), None)
         }
         Command::Campaign { common, runs, seed, run, threads } => {
             let request = campaign::request(runs, seed, run, (threads, common.out.is_some()));
@@ -88,6 +85,12 @@ pub(crate) fn run(arguments: Arguments) -> u8 {
         Command::Man { out } => manual(out.as_deref()),
     };
     exit_status(outcome)
+}
+
+/// Linear models, at one value or over a sweep.
+fn linearize(common: &Common, sweep: Option<String>, points: Option<usize>) -> Result<u8, Failure> {
+    let sweep = sweep.map(|range| SweepRequest { range, points });
+    on_project(common, &Request::Linearize { sweep }, None)
 }
 
 /// Prints the reason why a command line is invalid, or the help that it requests, and returns the
