@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -29,9 +30,12 @@ class Command:
 
     def answer(self, *words: str) -> tuple[str, int]:
         """The JSON object that the command prints, without its line end, and its exit status."""
-        run = subprocess.run(
-            [self._path, *words, "--json"], cwd=EXAMPLES, capture_output=True, check=False
-        )
+        with tempfile.TemporaryDirectory() as folder:
+            # without a folder, a report is written into the working folder
+            out = ["--out", folder] if words[0] == "report" else []
+            run = subprocess.run(
+                [self._path, *words, *out, "--json"], cwd=EXAMPLES, capture_output=True, check=False
+            )
         return run.stdout.decode().removesuffix("\n"), run.returncode
 
     def json(self, *words: str) -> str:
@@ -40,9 +44,7 @@ class Command:
 
     def status(self, *words: str) -> int:
         """The exit status of the command."""
-        return subprocess.run(
-            [self._path, *words], cwd=EXAMPLES, capture_output=True, check=False
-        ).returncode
+        return self.answer(*words)[1]
 
     def written(self, *words: str) -> dict[str, bytes]:
         """The files that the command writes into a new folder."""
