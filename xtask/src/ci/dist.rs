@@ -17,7 +17,8 @@ const STEPS: [&str; 12] = [
     // changes without a commit belong to no release
     "git diff --exit-code --stat HEAD",
     "rm -rf $DIST $FILES; mkdir -p $DIST $FILES/completions",
-    "python3 -m venv $TOOLS; pip install --quiet maturin==1.16.0 ziglang==0.17.1",
+    // a second release uses the tools of the first through a link, which `venv` refuses
+    "[ -L $TOOLS ] || python3 -m venv $TOOLS; pip install --quiet maturin==1.16.0 ziglang==0.17.1",
     "printf %s \"$LINKER\" > $TOOLS/bin/linker; chmod +x $TOOLS/bin/linker",
     "CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_LINKER=cc \
      cargo install --quiet --locked --root $TOOLS --target-dir $TOOLS/target cargo-deb@3.8.0",
