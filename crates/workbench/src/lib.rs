@@ -36,6 +36,7 @@ pub mod design;
 pub mod document;
 pub(crate) mod error;
 mod explanation;
+pub mod export;
 pub mod friction;
 mod grouped;
 pub mod identify;

@@ -23,6 +23,7 @@ mod design_printing;
 mod design_truth;
 mod entrained_air;
 mod exceeded_limits;
+mod export_c;
 mod family;
 mod family_hydraulic;
 mod family_measured;

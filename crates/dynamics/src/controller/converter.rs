@@ -58,6 +58,11 @@ impl Converter {
         self.step
     }
 
+    /// Lower and upper end of the range, in the unit of the signal.
+    pub fn range(&self) -> [f64; 2] {
+        self.range
+    }
+
     /// The nearest level, limited to the range.
     pub fn rounded(&self, value: f64) -> f64 {
         let [minimum, maximum] = self.range;

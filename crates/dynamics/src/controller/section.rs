@@ -91,7 +91,7 @@ impl Section {
     }
 
     /// Final output for a constant input of one; `None` for a section that integrates.
-    pub(super) fn steady_gain(&self) -> Option<f64> {
+    pub fn steady_gain(&self) -> Option<f64> {
         let under = 1.0 + self.denominator.iter().sum::<f64>();
         (under.abs() > INTEGRATING).then(|| self.numerator.iter().sum::<f64>() / under)
     }
