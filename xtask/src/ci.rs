@@ -269,9 +269,11 @@ fn soak(runner: &Runner) -> Outcome {
                   --include-ignored --nocapture --test-threads=1";
     // Four hundred valves, lines and frictions, each identified from its own recordings: the
     // coverage of the truth by the intervals; three hundred operating regions; and the alternatives
-    // of the book under each of its loads, and over the length of its hose.
+    // of the book under each of its loads, and over the length of its hose. Three hundred exported
+    // controllers by every compiler.
     let identified = "test --release -p phea-workbench --test all -- --ignored --nocapture \
-                      --test-threads=1 coverage::soak alternatives::soak alternatives_front::soak";
+                      --test-threads=1 coverage::soak alternatives::soak alternatives_front::soak \
+                      export_c::soak export_st::soak";
     // Certificates of random problems against eleven million plants, and designs from other seeds.
     let robust = "test --release -p phea-qft --test all -- --ignored";
     // A thousand rigs of each family, solved with both phea and CVODE.

@@ -4,6 +4,7 @@ use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use phea_workbench::answer::TableFormat;
 use phea_workbench::command::IdentifiedPart;
+use phea_workbench::export::ExportKind;
 
 use crate::changes::Changes;
 
@@ -189,6 +190,15 @@ pub(crate) enum Command {
     /// Identify the coefficients of a servovalve (or frequency responses, a line, or the friction
     /// of the cylinder) from recorded tests, with confidence intervals
     Identify(IdentifyArguments),
+    /// Write the controller, as it was verified, as source for the computer that runs it; an audit
+    /// comes first, and its verdict is stated in every file
+    #[command(mut_arg("out", |out| out.required(true)))]
+    Export {
+        /// Language of the files
+        kind: ExportWord,
+        #[command(flatten)]
+        common: Common,
+    },
     /// Write all results as one self-contained HTML page; a controller is designed if the project
     /// has a design section or gives no controller
     Report {
@@ -350,6 +360,31 @@ impl SubjectWord {
             SubjectWord::Response => IdentifiedPart::Response,
             SubjectWord::Line => IdentifiedPart::Line,
             SubjectWord::Friction => IdentifiedPart::Friction,
+        }
+    }
+}
+
+/// Language of exported files.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum ExportWord {
+    /// C99 with a self test
+    C,
+    /// Structured Text of IEC 61131-3 with a test block, portable and for TwinCAT
+    St,
+    /// Script for MATLAB and Octave with the plants of the family
+    Matlab,
+    /// Python with a self test and the plants of the family
+    Python,
+}
+
+impl ExportWord {
+    /// The language that it names.
+    pub(crate) fn kind(self) -> ExportKind {
+        match self {
+            ExportWord::C => ExportKind::C,
+            ExportWord::St => ExportKind::StructuredText,
+            ExportWord::Matlab => ExportKind::Matlab,
+            ExportWord::Python => ExportKind::Python,
         }
     }
 }

@@ -76,6 +76,7 @@ pub(crate) fn run(arguments: Arguments) -> u8 {
             let request = campaign::request(runs, seed, run, (threads, common.out.is_some()));
             print_answer(common.json, campaign::answer_with_files(&common, &request))
         }
+        Command::Export { kind, common } => on_project(&common, &Request::Export { kind: kind.kind() }, None),
         Command::Bench(common) => on_project(&common, &Request::Bench, None),
         Command::Identify(recorded) => print_answer(recorded.json, identify::answer_with_files(&recorded)),
         Command::Report { common, alternatives } => {

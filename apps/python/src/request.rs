@@ -9,6 +9,7 @@ use phea_workbench::command::{
 use phea_workbench::engineering::campaign::{Effort, RequestedRuns};
 use phea_workbench::engineering::linearize::SweepRequest;
 use phea_workbench::engineering::shaping::{Change, RequestedChange, Shaped};
+use phea_workbench::export::ExportKind;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -54,6 +55,7 @@ pub(crate) fn asked(name: &str, options: &Bound<'_, PyDict>) -> PyResult<Asked> 
         }),
         "campaign" => Request::Campaign(campaign(&options, files)?),
         "bench" => Request::Bench,
+        "export" => Request::Export { kind: kind(&options.get::<String>("kind")?.unwrap_or_default())? },
         "report" => Request::Report { files, alternatives: options.flag("alternatives")? },
         _ => return Err(PyValueError::new_err(format!("no command is called `{name}`"))),
     };
@@ -103,6 +105,12 @@ fn campaign(options: &Options<'_, '_>, files: bool) -> PyResult<CampaignRequest>
         None => CampaignRuns::All(RequestedRuns { runs: options.get("runs")?.unwrap_or_default(), effort }),
     };
     Ok(CampaignRequest { seed: options.get("seed")?.unwrap_or(1), runs, files })
+}
+
+fn kind(name: &str) -> PyResult<ExportKind> {
+    let names = ExportKind::ALL.map(ExportKind::name).join(", ");
+    let unknown = || PyValueError::new_err(format!("kind is one of {names}, not {name}"));
+    ExportKind::named(name).ok_or_else(unknown)
 }
 
 /// Changes from pairs of the name of an option of `shape` and its text.

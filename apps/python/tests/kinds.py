@@ -66,6 +66,8 @@ def on(path: str, *words: str, call: Callable[[phea.Project], Answer]) -> tuple[
     return [command, path, *options], lambda folder: call(phea.read(path.format(folder)))
 
 
+SAMPLE_TIME = {"controller.sample_time": "1 ms"}
+SAMPLED = ["--set", "controller.sample_time=1 ms"]
 HOSE, PLANT, CAMPAIGN = "ybitu/hose.toml", "qft/unstable_plant.toml", "benchmark/campaign.toml"
 
 KINDS: dict[str, tuple[list[str], Call]] = {
@@ -114,6 +116,10 @@ KINDS: dict[str, tuple[list[str], Call]] = {
         "{0}/alternatives.toml", "alternatives", call=lambda plant: plant.alternatives()
     ),
     "bench": on(HOSE, "bench", call=lambda rig: rig.bench()),
+    "export": (
+        ["export", "c", "qft/servo_shaped.toml", *SAMPLED, "--out", "{0}/c"],
+        lambda _: phea.read("qft/servo_shaped.toml").set(SAMPLE_TIME).export("c"),
+    ),
     "report": on(PLANT, "report", call=lambda plant: plant.report(files=True)),
     "valve": identified("valve", VALVE),
     "line": identified("line", LINE),

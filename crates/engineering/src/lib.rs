@@ -23,6 +23,7 @@ pub mod campaign;
 pub mod caveat;
 mod common_position;
 pub mod csv;
+pub mod deployed;
 pub mod design;
 pub mod estimate;
 pub mod family;

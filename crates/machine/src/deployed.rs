@@ -97,39 +97,60 @@ impl Deployed {
         DeployedState { controller: self.controller.at_rest(), command_v: 0.0 }
     }
 
-    /// State that holds this command while the signals do not change.
-    pub fn holding(&self, read: &SampledSignals, command_v: f64) -> DeployedState {
-        let measurement = self.converted(read.measurement);
-        let input = ControllerInput {
-            reference: read.reference,
-            measurement,
-            inner: read.pressure,
-            added: self.added(read),
-        };
-        DeployedState { controller: self.controller.holding_with(&input, command_v), command_v }
+    /// Replaces the state by one that holds this command while the signals do not change; it is
+    /// unchanged if a signal or the command is not a finite number.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::controller::{Compensator, Controller, Element};
+    /// use phea_machine::{Deployed, SampledSignals};
+    /// let feedback = Compensator::new(vec![Element::Gain(2.0), Element::Integrator]);
+    /// let deployed = Deployed::new(Controller { feedback, ..Controller::default() }.sampled(1e-3)?);
+    /// let mut state = deployed.at_rest();
+    /// let read = SampledSignals { reference: 5.0, measurement: 5.0, ..SampledSignals::default() };
+    /// deployed.hold(&mut state, &read, 0.25);
+    /// assert_eq!(deployed.step(&mut state, &read).command_v, 0.25);
+    /// deployed.hold(&mut state, &read, f64::NAN);
+    /// assert_eq!(state.command_v, 0.25);
+    /// # Ok::<(), phea_dynamics::linear::LinearError>(())
+    /// ```
+    pub fn hold(&self, state: &mut DeployedState, read: &SampledSignals, command_v: f64) {
+        if self.is_valid(read) && command_v.is_finite() {
+            let controller = self.controller.holding_with(&self.input(read), command_v);
+            *state = DeployedState { controller, command_v };
+        }
     }
 
     /// One sample: the command for these signals, and the next state.
     pub fn step(&self, state: &mut DeployedState, read: &SampledSignals) -> Executed {
+        let input = self.input(read);
+        let measurement = input.measurement;
+        if !self.is_valid(read) {
+            return self.repeated(state, measurement);
+        }
+        let output = self.controller.step_with(&mut state.controller, &input);
+        state.command_v = self.command_converter.map_or(output.command, |one| one.rounded(output.command));
+        Executed { command_v: state.command_v, measurement, output, is_valid: true }
+    }
+
+    /// True if every signal that the controller uses is a finite number.
+    fn is_valid(&self, read: &SampledSignals) -> bool {
         let used = [
             Some(read.reference),
             Some(read.measurement),
             (self.feed_forward != 0.0).then_some(read.velocity),
             self.controller.reads_inner().then_some(read.pressure),
         ];
-        let measurement = self.converted(read.measurement);
-        if !used.iter().flatten().all(|signal| signal.is_finite()) {
-            return self.repeated(state, measurement);
-        }
-        let input = ControllerInput {
+        used.iter().flatten().all(|signal| signal.is_finite())
+    }
+
+    fn input(&self, read: &SampledSignals) -> ControllerInput {
+        ControllerInput {
             reference: read.reference,
-            measurement,
+            measurement: self.converted(read.measurement),
             inner: read.pressure,
             added: self.added(read),
-        };
-        let output = self.controller.step_with(&mut state.controller, &input);
-        state.command_v = self.command_converter.map_or(output.command, |one| one.rounded(output.command));
-        Executed { command_v: state.command_v, measurement, output, is_valid: true }
+        }
     }
 
     fn repeated(&self, state: &DeployedState, measurement: f64) -> Executed {

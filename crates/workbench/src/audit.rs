@@ -25,4 +25,4 @@ pub use margins::above_one_again_words;
 pub(crate) use margins::{above_one_again, crossover_cell};
 pub use signal_noise::noise_sentence;
 pub(crate) use stability::{stability_reason, stability_sentence};
-pub(crate) use words::{closed_loop_symbol, meaning};
+pub(crate) use words::{closed_loop_symbol, evidence_sentence, meaning};

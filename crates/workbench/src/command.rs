@@ -4,6 +4,7 @@ mod alternatives;
 mod answers;
 mod campaign;
 mod check;
+mod export;
 mod friction;
 mod identification;
 mod identify;
@@ -59,6 +60,7 @@ use crate::answer::{Answer, Body};
 use crate::bench;
 use crate::design;
 use crate::document::Document;
+use crate::export::ExportKind;
 use crate::identify::in_use;
 use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
@@ -68,6 +70,7 @@ use crate::sizing;
 use crate::source::{Destination, HeldFiles, Source};
 use alternatives::alternatives_answer;
 use check::check;
+use export::export_answer;
 use linearize::{linearize_answer, swept_answer};
 use simulate::simulate_answer;
 use unprinted::Unprinted;
@@ -123,6 +126,11 @@ pub enum Request {
     Campaign(CampaignRequest),
     /// Static tests of the servovalve.
     Bench,
+    /// The controller, as it was verified, as source for its computer.
+    Export {
+        /// Language of the files.
+        kind: ExportKind,
+    },
     /// The page with every chapter.
     Report {
         /// True if every figure is requested as a file too.
@@ -148,6 +156,7 @@ impl Request {
             Request::Alternatives(_) => "alternatives",
             Request::Campaign(_) => "campaign",
             Request::Bench => "bench",
+            Request::Export { .. } => "export",
             Request::Report { .. } => "report",
         }
     }
@@ -278,6 +287,7 @@ fn answer_as_read(
         Request::Simulate(requested) => simulate_answer(source, loaded, requested, destination, watch),
         Request::Alternatives(requested) => alternatives_answer(source, loaded, catalogues, requested, watch),
         Request::Bench => bench_answer(loaded, watch),
+        Request::Export { kind } => export_answer(source, loaded, *kind, watch),
         Request::Report { files, alternatives } => {
             report_answer(source, loaded, catalogues, *files, *alternatives, watch)
         }

@@ -13,6 +13,7 @@ use phea_engineering::alternatives::AlternativesError;
 use phea_engineering::audit::AuditError;
 use phea_engineering::bench::BenchError;
 use phea_engineering::campaign::CampaignError;
+use phea_engineering::deployed::DeployedError;
 use phea_engineering::design::DesignError;
 use phea_engineering::family::ProjectFamilyError;
 use phea_engineering::identify_error::IdentifyError;
@@ -95,6 +96,14 @@ pub enum CommandError {
         /// Reason why it cannot be simulated.
         error: SimulateError,
     },
+    /// The controller cannot run on a computer.
+    #[error(transparent)]
+    Deployed(#[from] DeployedError),
+    /// The title of the project gives no name of a program.
+    #[error(
+        "exported files are named by the title of the project: begin it with a letter from A to Z, and not with a word that C reserves"
+    )]
+    NoIdentifier,
     /// The valve cannot be tested.
     #[error(transparent)]
     Bench(#[from] BenchError),

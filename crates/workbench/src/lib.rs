@@ -49,6 +49,7 @@ pub mod linear_values;
 pub mod linearize;
 pub(crate) mod over_time;
 pub mod plant_names;
+pub mod plant_values;
 pub mod report;
 pub mod response;
 pub mod rig_values;

@@ -9,7 +9,7 @@ use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use crate::command::CommandError;
-use crate::linear_values::Factors;
+use crate::plant_values::Factors;
 use crate::project::Loaded;
 use crate::quantity::MotionKind;
 use crate::report::positions;

@@ -4,90 +4,28 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use phea_dynamics::controller::{
-    AntiWindup, Compensator, Controller, Converter, Element, InnerFeedback, Timing,
-};
-use phea_dynamics::random;
-use phea_machine::{Deployed, SampledSignals};
-use phea_workbench::export::{Contract, c, test_vectors};
+use phea_machine::Deployed;
+use phea_workbench::export::{DeployedSignal, ExportKind};
 
-const WARNINGS: &str = "-std=c99 -pedantic -Wall -Wextra -Werror -Wconversion -Wsign-conversion \
+use crate::exported::{commands, drawn, exported, samples};
+
+const WARNINGS: &str = "-pedantic -Wall -Wextra -Werror -Wconversion -Wsign-conversion \
     -Wdouble-promotion -Wfloat-equal -Wshadow -Wcast-qual -Wmissing-prototypes -Wvla";
 
-fn contract() -> Contract {
-    Contract {
-        title: "Rig of the test */ with a comment".to_string(),
-        name: "rig".to_string(),
-        version: "0",
-        project_sha256: "0".repeat(64),
-        verdict: "met, by a grid".to_string(),
-        delay_s: 0.0,
-        not_covered: vec!["what lies between samples".to_string()],
-    }
-}
-
-/// A controller with these many elements, drawn from a seed.
-fn drawn(seed: u64) -> Deployed {
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
-    let mut uniform = move |from: f64, to: f64| from + (to - from) * random::uniform(&mut state);
-    let sample_time_s = 1e-3;
-    let mut elements = vec![Element::Gain(10_f64.powf(uniform(-4.0, 0.0)))];
-    if uniform(0.0, 1.0) < 0.7 {
-        elements.push(Element::Integrator);
-    }
-    for _ in 0..(uniform(0.0, 5.0) as usize) {
-        let frequency = 10_f64.powf(uniform(-1.0, 3.3));
-        let second = 10_f64.powf(uniform(-1.0, 3.3));
-        elements.push(match uniform(0.0, 3.0) as usize {
-            0 => Element::RealPole { frequency },
-            1 => Element::LeadLag { zero_frequency: frequency, pole_frequency: second },
-            _ => Element::ComplexPoles { natural_frequency: frequency, damping_ratio: uniform(0.05, 1.0) },
-        });
-    }
-    let prefilter = vec![Element::RealPole { frequency: uniform(1.0, 500.0) }];
-    let anti_windup =
-        [AntiWindup::None, AntiWindup::BackCalculation, AntiWindup::Clamping][uniform(0.0, 3.0) as usize];
-    let inner = InnerFeedback { gain: 1e-7, high_pass_rad_per_s: Some(10.0), ..InnerFeedback::default() };
-    let inner_feedback = if uniform(0.0, 1.0) < 0.4 { inner } else { InnerFeedback::default() };
-    let controller = Controller {
-        feedback: Compensator::new(elements),
-        prefilter: Compensator::new(prefilter),
-        command_limit: (uniform(0.0, 1.0) < 0.8).then_some(10.0),
-        anti_windup,
-        timing: Timing { inner_feedback, ..Timing::default() },
-        ..Controller::default()
-    };
-    let mut deployed = Deployed::new(controller.sampled(sample_time_s).unwrap());
-    if uniform(0.0, 1.0) < 0.5 {
-        deployed.measurement_converter = Converter::new(16, [-2e4, 2e4]).ok();
-        deployed.command_converter = Converter::new(12, [-10.0, 10.0]).ok();
-    }
-    if uniform(0.0, 1.0) < 0.5 {
-        deployed.feed_forward = 12.3;
-        deployed.velocity_resolution = if uniform(0.0, 1.0) < 0.5 { 1e-4 } else { 0.0 };
-    }
-    deployed
-}
-
 /// A program that reads signals and writes commands, with the exported files beside it.
-fn written(deployed: &Deployed, folder: &Path) -> Vec<&'static str> {
+fn written(deployed: &Deployed, folder: &Path) {
     fs::create_dir_all(folder).unwrap();
-    for file in c::files(deployed, &contract(), &test_vectors(deployed, 1e4)) {
+    let exported = exported(deployed);
+    let files = ExportKind::C.files(&exported);
+    assert!(files.iter().map(|file| &file.name).eq(&ExportKind::C.file_names("rig")));
+    for file in files {
         fs::write(folder.join(&file.name), &file.bytes).unwrap();
     }
-    let mut signals = vec!["reference", "measurement"];
-    if deployed.feed_forward != 0.0 {
-        signals.push("velocity");
-    }
-    if deployed.controller.reads_inner() {
-        signals.push("pressure");
-    }
-    let assigned: String = ["reference", "measurement", "velocity", "pressure"]
-        .iter()
-        .enumerate()
-        .filter(|(_, signal)| signals.contains(signal))
-        .map(|(place, signal)| format!("        read.{signal} = row[{place}];\n"))
-        .collect();
+    let places = ["reference", "measurement", "velocity", "pressure"];
+    let place = |signal: &DeployedSignal| places.iter().position(|name| *name == signal.name()).unwrap();
+    let assigned = exported.signals().into_iter();
+    let assigned: String =
+        assigned.map(|one| format!("        read.{} = row[{}];\n", one.name(), place(&one))).collect();
     let program = format!(
         "#include \"rig.h\"\n#include <stdio.h>\nint main(void) {{\n    double row[4];\n    rig_state state;\n    \
          rig_signals read;\n    rig_reset(&state);\n    while (fread(row, sizeof row, 1, stdin) == 1) {{\n{assigned}        \
@@ -95,74 +33,124 @@ fn written(deployed: &Deployed, folder: &Path) -> Vec<&'static str> {
          return 0;\n}}\n"
     );
     fs::write(folder.join("through.c"), program).unwrap();
-    signals
 }
 
-fn compiled(folder: &Path, program: &str, options: &str) -> PathBuf {
-    let out = folder.join(format!("{program}.{}", options.len()));
-    let sources = ["rig.c", "rig_self_test.c", program];
-    let status = Command::new("gcc")
-        .args(WARNINGS.split_whitespace())
-        .args(options.split_whitespace())
-        .args(sources)
-        .arg("-o")
-        .arg(&out)
-        .current_dir(folder)
-        .status()
-        .unwrap();
-    assert!(status.success(), "gcc {options} {}", folder.display());
-    out
+/// A compiler with its options, and the program that runs what it makes.
+#[derive(Clone, Copy)]
+struct Build {
+    compiler: &'static str,
+    options: &'static str,
+    runner: Option<&'static str>,
 }
 
-/// Samples that drive a controller into its limits and out of them.
-fn samples(count: usize, seed: u64) -> Vec<[f64; 4]> {
-    let mut state = seed | 1;
-    let mut size = 1e3;
-    (0..count)
-        .map(|index| {
-            if index % 97 == 0 {
-                size = 10_f64.powf(1.0 + 4.0 * random::uniform(&mut state));
+const fn build(compiler: &'static str, options: &'static str) -> Build {
+    Build { compiler, options, runner: None }
+}
+
+const fn on_arm(options: &'static str) -> Build {
+    Build { compiler: "arm-linux-gnueabihf-gcc", options, runner: Some("qemu-arm") }
+}
+
+/// Builds whose results are compared in every run of the tests.
+const ALWAYS: [Build; 2] =
+    [build("gcc", "-std=c99 -O0"), build("gcc", "-std=c99 -O3 -march=native -ffp-contract=fast")];
+
+/// Builds with every compiler, beyond those of every run.
+const MORE: [Build; 7] = [
+    build("gcc", "-std=c99 -O2 -fanalyzer"),
+    build("gcc", "-std=gnu99 -O3 -march=native"),
+    build("gcc", "-std=c99 -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"),
+    build("clang", "-std=c99 -O0 -Weverything -Wno-padded"),
+    build("clang", "-std=gnu99 -O3 -march=native -ffp-contract=fast -Wno-overriding-t-option"),
+    on_arm("-std=gnu99 -O3 -static -ffp-contract=fast -mfpu=neon-vfpv4"),
+    on_arm("-std=c99 -O2 -static -mfpu=vfpv3-d16"),
+];
+
+impl Build {
+    /// A program, compiled without a warning.
+    fn program(&self, folder: &Path, main: &str) -> PathBuf {
+        let out = folder.join("program");
+        let mut command = Command::new(self.compiler);
+        command.args(self.options.split_whitespace()).args(WARNINGS.split_whitespace());
+        let status =
+            command.args(["rig.c", "rig_self_test.c", main, "-o"]).arg(&out).current_dir(folder).status();
+        assert!(status.unwrap().success(), "{} {} in {}", self.compiler, self.options, folder.display());
+        out
+    }
+
+    fn command(&self, program: &Path) -> Command {
+        match self.runner {
+            None => Command::new(program),
+            Some(runner) => {
+                let mut command = Command::new(runner);
+                command.arg(program);
+                command
             }
-            let mut draw = |scale: f64| scale * (2.0 * random::uniform(&mut state) - 1.0);
-            let reference = draw(size);
-            [reference, draw(size), draw(0.3), draw(1e6)]
-        })
-        .collect()
+        }
+    }
+
+    /// Commands for samples in a file.
+    fn commands(&self, program: &Path, input: &Path) -> Vec<u64> {
+        let input = fs::File::open(input).unwrap();
+        let output = self.command(program).stdin(Stdio::from(input)).output().unwrap();
+        output.stdout.as_chunks::<8>().0.iter().map(|bytes| u64::from_le_bytes(*bytes)).collect()
+    }
 }
 
-fn commands(deployed: &Deployed, samples: &[[f64; 4]]) -> Vec<u64> {
-    let mut state = deployed.at_rest();
-    let step = |&[reference, measurement, velocity, pressure]: &[f64; 4]| {
-        let read = SampledSignals { reference, measurement, velocity, pressure };
-        deployed.step(&mut state, &read).command_v.to_bits()
-    };
-    samples.iter().map(step).collect()
+/// Compares a controller in the builds of every run.
+pub(crate) fn compare_always(deployed: &Deployed, name: &str) {
+    compare(deployed, name, 2000, &ALWAYS);
 }
 
-fn run(program: &Path, samples: &[[f64; 4]]) -> Vec<u64> {
-    let input = program.with_extension("input");
+/// Compares a controller in these builds with the simulation, and runs its self test.
+fn compare(deployed: &Deployed, name: &str, count: usize, builds: &[Build]) {
+    let folder = std::env::temp_dir().join(format!("phea_export_c_{}_{name}", std::process::id()));
+    written(deployed, &folder);
+    let samples = samples(count, count as u64);
     let bytes: Vec<u8> = samples.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
+    let input = folder.join("samples");
     fs::write(&input, bytes).unwrap();
-    let output = Command::new(program).stdin(Stdio::from(fs::File::open(input).unwrap())).output().unwrap();
-    output.stdout.as_chunks::<8>().0.iter().map(|bytes| u64::from_le_bytes(*bytes)).collect()
+    let expected = commands(deployed, &samples);
+    for build in builds {
+        let program = build.program(&folder, "through.c");
+        let found = build.commands(&program, &input);
+        assert!(found == expected, "controller {name}, {} {}", build.compiler, build.options);
+        let test = build.program(&folder, "example_main.c");
+        let outcome = build.command(&test).output().unwrap();
+        assert!(outcome.status.success(), "{}", String::from_utf8_lossy(&outcome.stdout));
+    }
+    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
 fn exported_c_gives_the_bits_of_the_simulation() {
-    let root = std::env::temp_dir().join(format!("phea_export_c_{}", std::process::id()));
-    for seed in 1..13 {
-        let deployed = drawn(seed);
-        let folder = root.join(seed.to_string());
-        written(&deployed, &folder);
-        let samples = samples(4000, seed);
-        let expected = commands(&deployed, &samples);
-        for options in ["-O0", "-O3 -march=native -ffp-contract=fast"] {
-            let program = compiled(&folder, "through.c", options);
-            assert!(run(&program, &samples) == expected, "controller {seed}, {options}");
-            let test = compiled(&folder, "example_main.c", options);
-            let outcome = Command::new(test).output().unwrap();
-            assert!(outcome.status.success(), "{}", String::from_utf8_lossy(&outcome.stdout));
-        }
-    }
-    fs::remove_dir_all(root).unwrap();
+    (1..13).for_each(|seed| compare(&drawn(seed), &seed.to_string(), 4000, &ALWAYS));
+}
+
+/// With fused products and sums allowed, the self test finds different results.
+#[test]
+fn relaxed_arithmetic_is_found_by_the_self_test() {
+    let fused = build("gcc", "-std=c99 -O3 -march=native -ffp-contract=fast -DRIG_RELAXED");
+    let folder = std::env::temp_dir().join(format!("phea_export_c_{}_relaxed", std::process::id()));
+    let differs = |seed: u64| {
+        written(&drawn(seed), &folder);
+        !fused.command(&fused.program(&folder, "example_main.c")).output().unwrap().status.success()
+    };
+    let count = (1..7).filter(|seed| differs(*seed)).count();
+    fs::remove_dir_all(folder).unwrap();
+    // a processor without such an instruction has nothing to fuse
+    assert_eq!(count, if has_fused_operations() { 6 } else { 0 });
+}
+
+fn has_fused_operations() -> bool {
+    let target = Command::new("gcc").args(["-march=native", "-dM", "-E", "-x", "c", "/dev/null"]).output();
+    String::from_utf8_lossy(&target.unwrap().stdout).contains("__FMA__")
+}
+
+/// A million samples of 300 controllers by every compiler, with sanitizers and on ARM.
+#[test]
+#[ignore = "part of the long tests; needs clang, gcc-arm-linux-gnueabihf and qemu-user"]
+fn soak() {
+    let builds = [ALWAYS.as_slice(), &MORE].concat();
+    (1..301).for_each(|seed| compare(&drawn(seed), &seed.to_string(), 1_000_000, &builds));
 }

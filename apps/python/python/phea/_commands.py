@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from phea.results import Campaign, Check, Design, Simulation
 
     AnyAnswer = TypeVar("AnyAnswer", bound=Answer)
+    ExportKind: TypeAlias = Literal["c", "st", "matlab", "python"]
     Progress: TypeAlias = bool | Callable[[str, float], object]
 
 # Greatest seed, number of runs, and number of threads and of points.
@@ -271,6 +272,20 @@ class Commands:
         from phea.answers import BenchAnswer
 
         return self._ask(BenchAnswer, "bench", {}, progress)
+
+    def export(self, kind: ExportKind, *, progress: Progress = False) -> answers.ExportAnswer:
+        """The controller, as it was verified, as source in ``export.files``: `phea export`.
+
+        Parameters
+        ----------
+        kind
+            Language: ``"c"``, ``"st"``, ``"matlab"`` or ``"python"``.
+        progress
+            ``True`` for a bar, or a callable that takes stage and fraction.
+        """
+        from phea.answers import ExportAnswer
+
+        return self._ask(ExportAnswer, "export", {"kind": kind}, progress)
 
     def report(
         self, *, alternatives: bool = False, files: bool = False, progress: Progress = False

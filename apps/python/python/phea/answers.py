@@ -6557,6 +6557,88 @@ class BenchRecordAnswer(Record):
     signals: tuple[BenchSignalAnswer, ...]
 
 
+class ExportAnswer(Answer):
+    """Answer of `export`.
+
+    Attributes
+    ----------
+    schema
+        Version of the layout of answers.
+    version
+        Version of phea.
+    command
+        Name of the command.
+    title
+        Title of the project.
+    project_sha256
+        SHA-256 of the bytes of the project file, before settings.
+    settings
+        Settings that replaced values of the file, each `path=value`.
+    catalogue_files
+        Catalogue files in addition to the built-in catalogue.
+    motion
+        Motion of the actuator, only of a rig with a motor: its torques are in N m, its angles
+        in rad, and the names of such quantities end in those units.
+    identified
+        Values identified from recordings, which replace those of the file.
+    line_model
+        Model chosen for the lines, where the file states none.
+    kind
+        Language of the files.
+    name
+        Identifier with which the names of files, types and functions begin.
+    verdict
+        Verdict of the audit that is run first.
+    evidence
+        Evidence behind the verdict.
+    sample_time_s
+        Sample time.
+    delay_s
+        Time from a sample to its command, as it was verified.
+    test_vectors
+        Number of test vectors.
+    not_covered
+        Effects that the verdict does not cover, in sentences.
+    exported
+        The files.
+    """
+
+    schema: int
+    version: str
+    command: Literal["export"]
+    title: str
+    project_sha256: str
+    settings: tuple[str, ...]
+    catalogue_files: tuple[str, ...]
+    motion: TurningMotion | None
+    identified: RecordedAnswer | None
+    line_model: ChosenLinesAnswer | None
+    kind: str
+    name: str
+    verdict: Verdict
+    evidence: Evidence
+    sample_time_s: float
+    delay_s: float
+    test_vectors: int
+    not_covered: tuple[str, ...]
+    exported: tuple[ExportedFileAnswer, ...]
+
+
+class ExportedFileAnswer(Record):
+    """A file of the controller.
+
+    Attributes
+    ----------
+    file
+        Name.
+    bytes
+        Size.
+    """
+
+    file: str
+    bytes: int
+
+
 class ReportAnswer(Answer):
     """Answer of `report`.
 

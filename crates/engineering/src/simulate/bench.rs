@@ -6,10 +6,11 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{CommandedPlant, Sensed, SimulationSettings};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::machine::{Machine, MachineError, MachineOptions, PowerUnit};
-use phea_machine::{Control, Deployed, Sampled};
+use phea_machine::{Control, Sampled};
 
 use super::SimulateError;
 use super::line_limits::LineLimits;
+use crate::deployed::executed;
 use crate::project::{self, Project, Scenario};
 use crate::quantity::Units;
 use crate::rig::{OfMotion, Rig, pressure_ratio};
@@ -212,13 +213,7 @@ fn sampled(
         held: CommandedPlant::on_hold(sensed, &between)?,
         delay_s: controller.timing.delay_s,
         command_limit: controller.command_limit.unwrap_or(f64::INFINITY),
-        deployed: Deployed {
-            controller: controller.sampled(sample_time_s)?,
-            feed_forward,
-            velocity_resolution: of_velocity.map_or(0.0, |sensor| sensor.resolution),
-            measurement_converter: setup.quantization.measurement,
-            command_converter: setup.quantization.command,
-        },
+        deployed: executed(setup, &controller, sample_time_s, feed_forward)?,
         noise,
         velocity_noise: of_velocity.map_or(0.0, |sensor| sensor.noise),
         pressure_noise: of_pressures.map_or(0.0, |declared| declared.noise),

@@ -27,7 +27,7 @@ pub(super) fn evidence_key(evidence: Evidence) -> &'static str {
 
 /// The evidence for the limits over frequency, in a sentence, and for the steps if they are part of
 /// the verdict.
-pub(super) fn evidence_sentence(view: &ProjectAudit) -> String {
+pub(crate) fn evidence_sentence(view: &ProjectAudit) -> String {
     let (evidence, verdict) = (view.audit.evidence, view.audit.verdict);
     let over_frequency = limits_sentence(evidence, verdict, view.names.headings().is_empty());
     match view.evidence() {

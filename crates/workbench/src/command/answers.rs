@@ -1,6 +1,7 @@
 //! The answers of all commands, described for programs.
 
 use super::check::CheckAnswer;
+use super::export::ExportAnswer;
 use super::refusal::RefusedAnswer;
 use super::verify::VerifyAnswer;
 use crate::alternatives::AlternativesAnswer;
@@ -34,6 +35,7 @@ pub(super) fn answers() -> Vec<CommandAnswer> {
         CommandAnswer::of::<CampaignRunAnswer>("campaign"),
         CommandAnswer::of::<AlternativesAnswer>("alternatives"),
         CommandAnswer::of::<BenchAnswer>("bench"),
+        CommandAnswer::of::<ExportAnswer>("export"),
         CommandAnswer::of::<ReportAnswer>("report"),
         CommandAnswer::whole::<RefusedAnswer>(None),
         CommandAnswer::whole::<CheckCertificateAnswer>(Some("check-certificate")),

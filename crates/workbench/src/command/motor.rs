@@ -24,6 +24,7 @@ pub(super) fn refuse(loaded: &Loaded, request: &Request) -> Result<(), CommandEr
         | Request::Compare
         | Request::Alternatives(_)
         | Request::Campaign(_)
+        | Request::Export { .. }
         | Request::Report { .. } => Ok(()),
     }
 }

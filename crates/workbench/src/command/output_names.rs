@@ -5,6 +5,7 @@ use phea_engineering::simulate::file_names;
 
 use crate::answer::TableFormat;
 use crate::audit::CERTIFICATE_FILE;
+use crate::export::identifier;
 use crate::project::{AS_DECLARED, Loaded, Project};
 use crate::shaping::SHAPED_PROJECT;
 
@@ -75,6 +76,10 @@ impl OutputNames {
                 CampaignRuns::All(_) => OutputNames::exact(&["runs.csv", "runs.csv.ahead", "runs.parquet"]),
             },
             Request::Bench => OutputNames::exact(&OF_BENCH),
+            Request::Export { kind } => {
+                let names = identifier(&project.title).map(|name| kind.file_names(&name));
+                OutputNames { exact: names.unwrap_or_default(), ..OutputNames::default() }
+            }
             Request::Report { .. } => OutputNames::exact(&OF_DESIGN).and(&["report.html"]),
         }
     }

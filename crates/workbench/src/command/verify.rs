@@ -37,7 +37,7 @@ pub(super) struct VerifyAnswer {
 const SPECIFICATIONS: f64 = 0.9;
 
 /// The audit of the given controller, with the limits of a design that it exceeds.
-fn audited(
+pub(super) fn audited(
     source: &dyn Source,
     setup: &Setup<'_>,
     watch: Watch<'_>,

@@ -4,6 +4,7 @@ use phea_engineering::alternatives::AlternativesError;
 use phea_engineering::audit::AuditError;
 use phea_engineering::bench::BenchError;
 use phea_engineering::campaign::CampaignError;
+use phea_engineering::deployed::DeployedError;
 use phea_engineering::design::DesignError;
 use phea_engineering::family::ProjectFamilyError;
 use phea_engineering::rig::RigError;
@@ -25,6 +26,8 @@ pub(super) fn tables(error: &CommandError) -> Vec<String> {
         CommandError::Sizing(SizingError::Rig(error)) | CommandError::Bench(BenchError::Rig(error)) => {
             return rig(error);
         }
+        CommandError::Deployed(error) => return deployed(error),
+        CommandError::NoIdentifier => &["title"],
         CommandError::Sizing(error) => sizing(error),
         CommandError::Bench(error) => bench(error),
         CommandError::Design(DesignError::NoSpecification) => &["specification"],
@@ -46,6 +49,16 @@ fn rig(error: &RigError) -> Vec<String> {
         RigError::OperatingPoint(_) => &["operating_point"],
         RigError::Line(_) => &["line"],
         RigError::Actuator(_) | RigError::Accumulator(_) => &[],
+    })
+}
+
+fn deployed(error: &DeployedError) -> Vec<String> {
+    owned(match error {
+        DeployedError::Control(error) => return control(error),
+        DeployedError::Rig(error) => return rig(error),
+        DeployedError::NoController | DeployedError::Continuous => &["controller.sample_time", "controller"],
+        DeployedError::VirtualImpedance => &["controller.impedance", "controller"],
+        DeployedError::ContinuousPrefilter => &["prefilter.continuous", "prefilter"],
     })
 }
 

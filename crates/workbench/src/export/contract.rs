@@ -1,61 +1,83 @@
 //! What every exported file says of itself.
 
+use phea_dynamics::controller::Converter;
 use phea_machine::Deployed;
+
+use super::DeployedSignal;
+use crate::quantity::{FORCE, MotionKind};
 
 /// Facts on an exported controller that stand in the head of every file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contract {
     /// Title of the project.
     pub title: String,
-    /// Identifier that begins the name of every file, type and function.
-    pub name: String,
     /// Version of phea.
     pub version: &'static str,
     /// SHA-256 of the project file.
     pub project_sha256: String,
+    /// Settings that replaced values of that file, each `path=value`.
+    pub settings: Vec<String>,
     /// Verdict with its evidence.
     pub verdict: String,
     /// Time from a sample to its command, as it was verified, s.
     pub delay_s: f64,
+    /// Motion of the rig; `None` for a plant without units.
+    pub motion: Option<MotionKind>,
     /// What the verdict does not cover, in sentences.
     pub not_covered: Vec<String>,
 }
 
 impl Contract {
     /// Lines of the head of a file.
-    pub(crate) fn lines(&self, deployed: &Deployed) -> Vec<String> {
-        let sample_time_s = deployed.controller.sample_time_s();
+    pub(super) fn lines(&self, deployed: &Deployed) -> Vec<String> {
         let mut lines = vec![
             self.title.clone(),
+            String::new(),
             format!("Written by phea {} from a project with SHA-256", self.version),
             self.project_sha256.clone(),
-            String::new(),
-            format!("Verdict: {}", self.verdict),
-            String::new(),
-            format!(
-                "Call the step every {sample_time_s} s; its command must act within {} s of",
-                self.delay_s
-            ),
-            "the sample. Force in N, positive as declared; command in V.".to_string(),
         ];
-        if deployed.feed_forward != 0.0 {
-            lines.push("Velocity of the load in m/s.".to_string());
-        }
-        if deployed.controller.reads_inner() {
-            lines.push("Pressure signal in Pa.".to_string());
-        }
-        for (what, converter) in
-            [("measurement", deployed.measurement_converter), ("command", deployed.command_converter)]
-        {
-            if let Some(converter) = converter {
-                lines.push(format!("Converter of the {what}: steps of {}.", converter.step()));
-            }
-        }
+        lines.extend(self.settings.iter().map(|setting| format!("with {setting}")));
+        lines.extend([String::new(), format!("Verdict: {}", self.verdict), String::new()]);
+        lines.push(format!(
+            "Sample time: {} s. The command acts within {} s of its sample.",
+            deployed.controller.sample_time_s(),
+            self.delay_s
+        ));
+        lines.push(String::new());
+        let signals = DeployedSignal::of(deployed);
+        lines.extend(signals.into_iter().map(|one| format!("{}: {}", one.name(), one.meaning(self.motion))));
+        let limit = deployed.controller.command_limit();
+        let volt = self.motion.map_or("", |_| " V");
+        let limited = if limit.is_finite() {
+            format!(", limited to -{limit}{volt} to {limit}{volt}")
+        } else {
+            String::new()
+        };
+        let command = self.motion.map_or("input of the plant", |_| "command of the valve in V");
+        lines.push(format!("command: {command}{limited}"));
+        lines.extend(self.converters(deployed));
         if !self.not_covered.is_empty() {
-            lines.push(String::new());
-            lines.push("The verdict does not cover:".to_string());
+            lines.extend([String::new(), "The verdict does not cover:".to_string()]);
             lines.extend(self.not_covered.iter().map(|sentence| format!("- {sentence}")));
         }
         lines
+    }
+
+    /// Lines on the converters.
+    fn converters(&self, deployed: &Deployed) -> Vec<String> {
+        let force = self.motion.map_or(String::new(), |motion| format!(" {}", motion.dimension(&FORCE).si));
+        let volts = self.motion.map_or(String::new(), |_| " V".to_string());
+        let of = |what: &str, unit: &str, converter: Option<Converter>| {
+            let converter = converter?;
+            let ([minimum, maximum], step) = (converter.range(), converter.step());
+            Some(format!(
+                "Converter of the {what}: {minimum}{unit} to {maximum}{unit} in steps of {step}{unit}."
+            ))
+        };
+        let both = [
+            of("measurement", &force, deployed.measurement_converter),
+            of("command", &volts, deployed.command_converter),
+        ];
+        both.into_iter().flatten().collect()
     }
 }

@@ -3,7 +3,7 @@
 use phea_machine::{Deployed, DeployedState, Executed, SampledSignals};
 
 /// Number of test vectors.
-pub const VECTORS: usize = 256;
+const VECTORS: usize = 256;
 
 /// What is done at a test vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,9 +29,9 @@ pub struct TestVector {
     pub executed: Executed,
 }
 
-/// Amplitudes of the signals of the test vectors.
+/// SignalSizes of the signals of the test vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Amplitudes {
+struct SignalSizes {
     force: f64,
     velocity: f64,
     pressure: f64,
@@ -54,7 +54,7 @@ struct Amplitudes {
 /// # Ok::<(), phea_dynamics::linear::LinearError>(())
 /// ```
 pub fn test_vectors(deployed: &Deployed, force: f64) -> Vec<TestVector> {
-    let amplitudes = Amplitudes { force, velocity: 0.1, pressure: 1e5 };
+    let amplitudes = SignalSizes { force, velocity: 0.1, pressure: 1e5 };
     let saturating = saturating(deployed, amplitudes);
     let mut state = deployed.at_rest();
     (0..VECTORS).map(|index| vector(deployed, &mut state, (amplitudes, saturating), index)).collect()
@@ -62,7 +62,7 @@ pub fn test_vectors(deployed: &Deployed, force: f64) -> Vec<TestVector> {
 
 /// Multiple of the force, a power of two, whose error reaches the limit of the command within 24
 /// samples; that of the largest tried if none does.
-fn saturating(deployed: &Deployed, amplitudes: Amplitudes) -> f64 {
+fn saturating(deployed: &Deployed, amplitudes: SignalSizes) -> f64 {
     let reaches = |factor: f64| {
         let mut state = deployed.at_rest();
         let signals = SampledSignals { reference: factor * amplitudes.force, ..SampledSignals::default() };
@@ -78,7 +78,7 @@ fn saturating(deployed: &Deployed, amplitudes: Amplitudes) -> f64 {
 fn vector(
     deployed: &Deployed,
     state: &mut DeployedState,
-    (amplitudes, saturating): (Amplitudes, f64),
+    (amplitudes, saturating): (SignalSizes, f64),
     index: usize,
 ) -> TestVector {
     let wave = |period: usize| (index % period) as f64 / period as f64 - 0.5;
@@ -107,14 +107,15 @@ fn vector(
     let limit = deployed.controller.command_limit();
     let held_v = if limit.is_finite() { 0.25 * limit } else { 0.25 };
     let operation = match index {
-        200 => VectorOperation::ResetAndStep,
+        // the states of a controller without anti-windup would not return in time
+        136 | 200 => VectorOperation::ResetAndStep,
         216 => VectorOperation::HoldAndStep,
         _ => VectorOperation::Step,
     };
     match operation {
         VectorOperation::Step => {}
         VectorOperation::ResetAndStep => *state = deployed.at_rest(),
-        VectorOperation::HoldAndStep => *state = deployed.holding(&signals, held_v),
+        VectorOperation::HoldAndStep => deployed.hold(state, &signals, held_v),
     }
     TestVector { operation, signals, held_v, executed: deployed.step(state, &signals) }
 }

@@ -6,18 +6,7 @@ use phea_dynamics::controller::{AntiWindup, Converter, Section};
 use phea_machine::Deployed;
 
 use super::number::{braces, constant};
-
-/// Names of the signals that the controller reads.
-pub(super) fn signals(deployed: &Deployed) -> Vec<&'static str> {
-    let mut signals = vec!["reference", "measurement"];
-    if deployed.feed_forward != 0.0 {
-        signals.push("velocity");
-    }
-    if deployed.controller.reads_inner() {
-        signals.push("pressure");
-    }
-    signals
-}
+use crate::export::DeployedSignal;
 
 /// Names of the series of sections, with their sections; one without sections is left out.
 fn series(deployed: &Deployed) -> Vec<(&'static str, &[Section])> {
@@ -42,7 +31,10 @@ pub(super) fn header(deployed: &Deployed, name: &str) -> String {
         .iter()
         .map(|(series, sections)| format!("    double {series}[{}][2];\n", sections.len()))
         .collect();
-    let members: String = signals(deployed).iter().map(|signal| format!("    double {signal};\n")).collect();
+    let members: String = DeployedSignal::of(deployed)
+        .iter()
+        .map(|signal| format!("    double {};\n", signal.name()))
+        .collect();
     let counts = converters(deployed).map_or(String::new(), |_| {
         format!(
             "/* One sample from and to counts of the converters; `signals->measurement` is not read. */\n\
@@ -77,7 +69,8 @@ typedef struct {{
 /* State at rest, with a command of zero. */
 void {name}_reset({name}_state *state);
 
-/* State that holds this command while the signals do not change: a bumpless start. */
+/* State that holds this command while the signals do not change: a bumpless start. It is unchanged if
+ * a signal or the command is no finite number. */
 void {name}_hold({name}_state *state, const {name}_signals *signals, double command);
 
 /* One sample. */
@@ -101,7 +94,8 @@ const ARITHMETIC: &str = "#if defined(__FAST_MATH__)
 #error \"compile without -ffast-math: its results are not those that were verified\"
 #endif
 #include <float.h>
-#if FLT_EVAL_METHOD != 0
+/* 0 and 1: doubles as they are; 16 to 64: likewise, with shorter types beside them */
+#if (FLT_EVAL_METHOD < 0) || (FLT_EVAL_METHOD == 2) || (FLT_EVAL_METHOD > 64)
 #error \"this compiler computes with more digits than a double has: its results are not those that were verified\"
 #endif
 
@@ -150,8 +144,8 @@ static double difference(double a, double b) {{
 }}
 
 /* Neither an infinity nor no number. */
-static int finite(double value) {{
-    return value - value >= 0.0;
+static int is_finite(double value) {{
+    return (value - value) >= 0.0;
 }}
 "
     );
@@ -200,15 +194,18 @@ fn rounding(deployed: &Deployed) -> String {
 /* Nearest whole number, halves away from zero. */
 static double whole(double value) {
     double result = value;
-    if (value > -0.5 && value < 0.5) {
+    if ((value > -0.5) && (value < 0.5)) {
         result = value * 0.0;
-    } else if (value > -4503599627370496.0 && value < 4503599627370496.0) {
+    } else if ((value > -4503599627370496.0) && (value < 4503599627370496.0)) {
         result = (double)(long long)value;
-        if (value - result >= 0.5) {
+        if ((value - result) >= 0.5) {
             result = result + 1.0;
-        } else if (value - result <= -0.5) {
+        }
+        if ((value - result) <= -0.5) {
             result = result - 1.0;
         }
+    } else {
+        /* every number of this size is whole */
     }
     return result;
 }
@@ -261,7 +258,7 @@ static double filtered(const double table[7], double memory[2], double input) {
 
 /* State of a section in which nothing changes; one that integrates gives the wanted output. */
 static double settled(const double table[7], double memory[2], double input, double wanted) {
-    double output = table[6] > 0.5 ? wanted : product(table[5], input);
+    double output = (table[6] > 0.5) ? wanted : product(table[5], input);
     double second = difference(product(table[2], input), product(table[4], output));
     memory[0] = sum(difference(product(table[1], input), product(table[3], output)), second);
     memory[1] = second;
@@ -296,7 +293,20 @@ fn through(series: &str, sections: usize, call: &str) -> String {
 
 fn state_functions(deployed: &Deployed, name: &str) -> String {
     let controller = &deployed.controller;
-    let mut text = format!("\nvoid {name}_reset({name}_state *state) {{\n    int index;\n");
+    let signals = DeployedSignal::of(deployed);
+    let finite = signals.iter().map(|signal| format!("is_finite(signals->{})", signal.name()));
+    let mut text = format!(
+        "
+/* 1 if every signal is a finite number. */
+static int usable(const {name}_signals *signals) {{
+    return {};
+}}
+
+void {name}_reset({name}_state *state) {{
+    int index;
+",
+        finite.collect::<Vec<_>>().join(" && ")
+    );
     for (series, sections) in series(deployed) {
         let _ = write!(
             text,
@@ -317,6 +327,9 @@ void {name}_hold({name}_state *state, const {name}_signals *signals, double comm
     int index;
     double signal = signals->reference;
     double held = command;
+    if (!usable(signals) || !is_finite(command)) {{
+        return;
+    }}
 "
     );
     let settled = |text: &mut String, series: &str, sections: usize, variable: &str, wanted: &str| {
@@ -340,41 +353,8 @@ void {name}_hold({name}_state *state, const {name}_signals *signals, double comm
 
 fn step(deployed: &Deployed, name: &str) -> String {
     let controller = &deployed.controller;
-    let clamping = controller.anti_windup() == AntiWindup::Clamping;
     let sections = controller.feedback_sections().len();
-    let finite: Vec<String> =
-        signals(deployed).iter().map(|signal| format!("!finite(signals->{signal})")).collect();
-    let mut text = format!(
-        "
-{name}_output {name}_step({name}_state *state, const {name}_signals *signals) {{
-    {name}_output result;
-    int index;
-    double signal;
-    double error;
-    double beside = 0.0;
-    double output;
-    double continued;
-    double wanted;
-    double command;
-"
-    );
-    if clamping {
-        let _ = writeln!(text, "    double before[{sections}][2];");
-    }
-    let _ = write!(
-        text,
-        "
-    if ({}) {{
-        result.command = state->command;
-        result.unlimited = state->command;
-        result.limited = 0;
-        result.invalid = 1;
-        return result;
-    }}
-    signal = signals->reference;
-",
-        finite.join(" || ")
-    );
+    let mut text = start_of_step(deployed, name);
     let filtered = |text: &mut String, series: &str, sections: usize, variable: &str| {
         let call = through(series, sections, &format!("{variable} = filtered"));
         let _ = write!(text, "{call}, {variable});\n    }}\n");
@@ -396,29 +376,67 @@ fn step(deployed: &Deployed, name: &str) -> String {
         "    state->command = {rounded};
     result.command = state->command;
     result.unlimited = wanted;
-    result.limited = !(command >= wanted && command <= wanted);
+    result.limited = !((command >= wanted) && (command <= wanted));
     result.invalid = 0;
     return result;
 }}
 "
     );
-    if let Some([measured, commanded]) = converters(deployed) {
-        let _ = write!(
-            text,
-            "
+    text.push_str(&step_counts(deployed, name));
+    text
+}
+
+/// Variables of a step, and its end if a signal is not a finite number.
+fn start_of_step(deployed: &Deployed, name: &str) -> String {
+    let before = match deployed.controller.anti_windup() {
+        AntiWindup::Clamping => {
+            format!("    double before[{}][2];\n", deployed.controller.feedback_sections().len())
+        }
+        AntiWindup::None | AntiWindup::BackCalculation => String::new(),
+    };
+    format!(
+        "
+{name}_output {name}_step({name}_state *state, const {name}_signals *signals) {{
+    {name}_output result;
+    int index;
+    double signal;
+    double error;
+    double beside = 0.0;
+    double output;
+    double continued;
+    double wanted;
+    double command;
+{before}
+    if (!usable(signals)) {{
+        result.command = state->command;
+        result.unlimited = state->command;
+        result.limited = 0;
+        result.invalid = 1;
+        return result;
+    }}
+    signal = signals->reference;
+"
+    )
+}
+
+/// The step from and to counts of the converters; none without both.
+fn step_counts(deployed: &Deployed, name: &str) -> String {
+    let Some([measured, commanded]) = converters(deployed) else { return String::new() };
+    format!(
+        "
 long {name}_step_counts({name}_state *state, const {name}_signals *signals, long measurement) {{
     {name}_signals read = *signals;
     {name}_output result;
+    double counts;
     read.measurement = product((double)measurement, {});
     result = {name}_step(state, &read);
-    return (long)whole(result.command / {});
+    counts = whole(result.command / {});
+    return (long)counts;
 }}
 ",
-            constant(measured.step()),
-            constant(commanded.step())
-        );
-    }
-    text
+        constant(measured.step()),
+        constant(commanded.step())
+    )
 }
 
 /// The feedback compensator with the limit of the command.
@@ -447,7 +465,7 @@ fn feedback(deployed: &Deployed, sections: usize) -> String {
     };
     let continued = match controller.anti_windup() {
         AntiWindup::BackCalculation => {
-            "    if (!(command >= wanted && command <= wanted)) {
+            "    if (!((command >= wanted) && (command <= wanted))) {
         continued = difference(command, beside);
     }
 "
@@ -468,7 +486,7 @@ fn feedback(deployed: &Deployed, sections: usize) -> String {
     if controller.anti_windup() == AntiWindup::Clamping {
         let _ = write!(
             text,
-            "    if (!(command >= wanted && command <= wanted) && product(wanted, error) > 0.0) {{
+            "    if (!((command >= wanted) && (command <= wanted)) && (product(wanted, error) > 0.0)) {{
         for (index = 0; index < {sections}; index++) {{
             state->feedback[index][0] = before[index][0];
             state->feedback[index][1] = before[index][1];
