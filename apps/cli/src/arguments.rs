@@ -371,6 +371,8 @@ pub(crate) enum ExportWord {
     C,
     /// Structured Text of IEC 61131-3 with a test block, portable and for TwinCAT
     St,
+    /// Package of ros2_control around the C functions
+    Ros2,
     /// Script for MATLAB and Octave with the plants of the family
     Matlab,
     /// Python with a self test and the plants of the family
@@ -383,6 +385,7 @@ impl ExportWord {
         match self {
             ExportWord::C => ExportKind::C,
             ExportWord::St => ExportKind::StructuredText,
+            ExportWord::Ros2 => ExportKind::Ros2,
             ExportWord::Matlab => ExportKind::Matlab,
             ExportWord::Python => ExportKind::Python,
         }

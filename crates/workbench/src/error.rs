@@ -99,6 +99,11 @@ pub enum CommandError {
     /// The controller cannot run on a computer.
     #[error(transparent)]
     Deployed(#[from] DeployedError),
+    /// The controller cannot run in ros2_control.
+    #[error(
+        "ros2_control updates a controller a whole number of times per second: choose a sample time such as 1 ms or 0.8 ms"
+    )]
+    UpdateRate,
     /// The title of the project gives no name of a program.
     #[error(
         "exported files are named by the title of the project: begin it with a letter from A to Z, and not with a word that C reserves"

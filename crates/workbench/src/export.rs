@@ -8,6 +8,7 @@ pub mod c;
 mod contract;
 mod kind;
 mod name;
+pub mod ros2;
 pub mod script;
 mod signal;
 pub mod structured_text;

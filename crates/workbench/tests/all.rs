@@ -25,6 +25,7 @@ mod entrained_air;
 mod exceeded_limits;
 mod export_c;
 mod export_examples;
+mod export_ros2;
 mod export_st;
 mod exported;
 mod family;

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from phea.results import Campaign, Check, Design, Simulation
 
     AnyAnswer = TypeVar("AnyAnswer", bound=Answer)
-    ExportKind: TypeAlias = Literal["c", "st", "matlab", "python"]
+    ExportKind: TypeAlias = Literal["c", "st", "ros2", "matlab", "python"]
     Progress: TypeAlias = bool | Callable[[str, float], object]
 
 # Greatest seed, number of runs, and number of threads and of points.
@@ -279,7 +279,7 @@ class Commands:
         Parameters
         ----------
         kind
-            Language: ``"c"``, ``"st"``, ``"matlab"`` or ``"python"``.
+            Language: ``"c"``, ``"st"``, ``"ros2"``, ``"matlab"`` or ``"python"``.
         progress
             ``True`` for a bar, or a callable that takes stage and fraction.
         """

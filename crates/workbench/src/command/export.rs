@@ -14,6 +14,7 @@ use crate::answer::{Answer, Body, VERSION};
 use crate::audit::evidence_sentence;
 use crate::caveat;
 use crate::document::{Cell, Document, Table, capital};
+use crate::export::ros2::update_rate;
 use crate::export::{Contract, ExportKind, ExportedController, ExportedPlant, identifier, test_vectors};
 use crate::plant_values::FamilyValues;
 use crate::project::{InputSignal, Loaded, Project};
@@ -59,8 +60,10 @@ fn not_covered(view: &ProjectAudit, deployed: &Deployed) -> Vec<String> {
     let mut sentences: Vec<String> =
         sentences.iter().map(|sentence| format!("{}.", capital(sentence))).collect();
     sentences.push("The rounding of each operation of the computer is not part of the verdict.".to_string());
-    sentences
-        .push("The limit of the command and its anti-windup act outside of the linear loop.".to_string());
+    if deployed.controller.command_limit().is_finite() {
+        sentences
+            .push("The limit of the command and its anti-windup act outside of the linear loop.".to_string());
+    }
     if deployed.feed_forward != 0.0 {
         sentences
             .push("The signal that is fed forward is assumed to be that of the velocity sensor.".to_string());
@@ -115,6 +118,9 @@ pub(super) fn export_answer(
     let vectors = test_vectors(&deployed, force_of(&loaded.project, &deployed));
     let (parameters, plants) = plants(&FamilyValues::of(&problem));
     let exported = ExportedController { name, deployed, contract, vectors, parameters, plants };
+    if kind == ExportKind::Ros2 && update_rate(&exported).is_none() {
+        return Err(CommandError::UpdateRate);
+    }
     let files = kind.files(&exported);
     let listed = files.iter();
     let listed = listed.map(|file| ExportedFileAnswer { file: file.name.clone(), bytes: file.bytes.len() });
@@ -138,11 +144,14 @@ fn document(answer: &ExportAnswer, contract: &Contract) -> Document {
     let mut document = Document::default();
     document.line(format!("Verdict: {}", contract.verdict));
     let milliseconds = |time_s| DisplayUnit::MILLISECOND.text(time_s, 4);
+    let acts = match answer.delay_s == 0.0 {
+        true => "without delay".to_string(),
+        false => format!("at most {} later", milliseconds(answer.delay_s)),
+    };
     document.line(format!(
-        "{} runs every {}, and its command acts within {} of the sample; {} test vectors",
+        "{} runs every {}, and the verdict assumes that its command acts {acts}; {} test vectors",
         answer.name,
         milliseconds(answer.sample_time_s),
-        milliseconds(answer.delay_s),
         answer.test_vectors,
     ));
     document.sentences(answer.not_covered.iter().cloned());

@@ -27,6 +27,7 @@ pub(super) fn tables(error: &CommandError) -> Vec<String> {
             return rig(error);
         }
         CommandError::Deployed(error) => return deployed(error),
+        CommandError::UpdateRate => &["controller.sample_time", "controller"],
         CommandError::NoIdentifier => &["title"],
         CommandError::Sizing(error) => sizing(error),
         CommandError::Bench(error) => bench(error),

@@ -34,7 +34,7 @@ pub fn files(exported: &ExportedController) -> Vec<OutputFile> {
 }
 
 /// Lines as a comment, which they cannot end.
-fn comment(lines: &[String]) -> String {
+pub(super) fn comment(lines: &[String]) -> String {
     let lines = lines.iter().map(|line| format!(" * {}", line.replace("*/", "* /").replace('\\', "/")));
     format!("/*\n{}\n */", lines.map(|line| line.trim_end().to_string()).collect::<Vec<_>>().join("\n"))
 }

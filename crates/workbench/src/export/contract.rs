@@ -38,11 +38,11 @@ impl Contract {
         ];
         lines.extend(self.settings.iter().map(|setting| format!("with {setting}")));
         lines.extend([String::new(), format!("Verdict: {}", self.verdict), String::new()]);
-        lines.push(format!(
-            "Sample time: {} s. The command acts within {} s of its sample.",
-            deployed.controller.sample_time_s(),
-            self.delay_s
-        ));
+        let acts = match self.delay_s == 0.0 {
+            true => "The verdict assumes that the command acts at its sample, without delay.".to_string(),
+            false => format!("The command must act at most {} s after its sample.", self.delay_s),
+        };
+        lines.push(format!("Sample time: {} s. {acts}", deployed.controller.sample_time_s()));
         lines.push(String::new());
         let signals = DeployedSignal::of(deployed);
         lines.extend(signals.into_iter().map(|one| format!("{}: {}", one.name(), one.meaning(self.motion))));

@@ -1,6 +1,6 @@
 //! Languages of exported files.
 
-use super::{ExportedController, c, script, structured_text};
+use super::{ExportedController, c, ros2, script, structured_text};
 use crate::answer::OutputFile;
 
 /// Language of exported files.
@@ -10,6 +10,8 @@ pub enum ExportKind {
     C,
     /// Structured Text of IEC 61131-3.
     StructuredText,
+    /// A package of ros2_control.
+    Ros2,
     /// A script for MATLAB and Octave.
     Matlab,
     /// A module for Python.
@@ -18,8 +20,8 @@ pub enum ExportKind {
 
 impl ExportKind {
     /// All of them.
-    pub const ALL: [ExportKind; 4] =
-        [ExportKind::C, ExportKind::StructuredText, ExportKind::Matlab, ExportKind::Python];
+    pub const ALL: [ExportKind; 5] =
+        [ExportKind::C, ExportKind::StructuredText, ExportKind::Ros2, ExportKind::Matlab, ExportKind::Python];
 
     /// Name on the command line.
     ///
@@ -33,6 +35,7 @@ impl ExportKind {
         match self {
             ExportKind::C => "c",
             ExportKind::StructuredText => "st",
+            ExportKind::Ros2 => "ros2",
             ExportKind::Matlab => "matlab",
             ExportKind::Python => "python",
         }
@@ -52,6 +55,7 @@ impl ExportKind {
                 let [controller, test] = structured_text::OF_TWINCAT;
                 own(&[structured_text::PORTABLE, controller, test])
             }
+            ExportKind::Ros2 => [ExportKind::C.file_names(name), ros2::file_names(name)].concat(),
             ExportKind::Matlab => own(&[".m"]),
             ExportKind::Python => own(&[".py"]),
         }
@@ -62,6 +66,7 @@ impl ExportKind {
         match self {
             ExportKind::C => c::files(exported),
             ExportKind::StructuredText => structured_text::files(exported),
+            ExportKind::Ros2 => ros2::files(exported),
             ExportKind::Matlab => script::matlab(exported),
             ExportKind::Python => script::python(exported),
         }
