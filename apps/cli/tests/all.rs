@@ -6,6 +6,7 @@ mod answer_schema;
 mod campaign;
 mod campaign_killed;
 mod exit_status;
+mod export;
 mod full_disk;
 mod inputs_protected;
 mod installation;
