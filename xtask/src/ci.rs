@@ -273,7 +273,7 @@ fn soak(runner: &Runner) -> Outcome {
     // controllers by every compiler.
     let identified = "test --release -p phea-workbench --test all -- --ignored --nocapture \
                       --test-threads=1 coverage::soak alternatives::soak alternatives_front::soak \
-                      export_c::soak export_st::soak";
+                      export_c::soak export_st::soak friction_siblings::";
     // Certificates of random problems against eleven million plants, and designs from other seeds.
     let robust = "test --release -p phea-qft --test all -- --ignored";
     // A thousand rigs of each family, solved with both phea and CVODE.

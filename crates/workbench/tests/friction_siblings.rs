@@ -86,12 +86,14 @@ fn a_zero_error_of_a_tenth_of_a_bar_at_a() {
 }
 
 #[test]
+#[ignore = "part of the long tests, as a sibling of the one before"]
 fn a_zero_error_of_a_third_of_a_bar_at_b() {
     a_zero_error_holds([0.0, 0.3], 2);
 }
 
 /// Zero error of 158 N, more than the static friction.
 #[test]
+#[ignore = "part of the long tests, as a sibling of the one before"]
 fn a_zero_error_of_a_bar_below_at_a() {
     a_zero_error_holds([-1.0, 0.0], 3);
 }
@@ -118,11 +120,13 @@ fn stick_slip_at_two_millimetres_a_second() {
 }
 
 #[test]
+#[ignore = "part of the long tests, as a sibling of the one before"]
 fn stick_slip_at_five_millimetres_a_second() {
     slips_are_left_out(5e-3, 1e5, 5);
 }
 
 #[test]
+#[ignore = "part of the long tests, as a sibling of the one before"]
 fn stick_slip_on_a_stiffer_spring() {
     slips_are_left_out(3e-3, 2e5, 6);
 }
@@ -154,11 +158,13 @@ fn clean_fast_runs_of_a_soft_seal() {
 }
 
 #[test]
+#[ignore = "part of the long tests, as a sibling of the one before"]
 fn clean_fast_runs_of_a_hard_seal() {
     clean_fast_runs_hold(&of_levels(300.0, 420.0, 800.0));
 }
 
 #[test]
+#[ignore = "part of the long tests, as a sibling of the one before"]
 fn clean_fast_runs_of_a_seal_with_hardly_falling_friction() {
     clean_fast_runs_hold(&of_levels(100.0, 110.0, 60.0));
 }
@@ -180,11 +186,13 @@ fn three_speeds_about_the_stribeck_velocity() {
 }
 
 #[test]
+#[ignore = "part of the long tests, as a sibling of the one before"]
 fn three_speeds_beyond_it() {
     three_speeds_hold(&of_levels(140.0, 200.0, 300.0), [0.03, 0.08, 0.2], 8);
 }
 
 #[test]
+#[ignore = "part of the long tests, as a sibling of the one before"]
 fn three_speeds_of_a_soft_seal() {
     three_speeds_hold(&of_levels(35.0, 60.0, 250.0), [3e-3, 2e-2, 0.2], 9);
 }
@@ -220,11 +228,13 @@ fn a_seal_that_is_a_third_harder_on_the_way_back() {
 }
 
 #[test]
+#[ignore = "part of the long tests, as a sibling of the one before"]
 fn a_seal_that_sticks_more_on_the_way_out() {
     directions_hold(&retracting(70.0, 85.0, 100.0), true, 11);
 }
 
 #[test]
+#[ignore = "part of the long tests, as a sibling of the one before"]
 fn a_seal_whose_film_is_thinner_on_the_way_back() {
     directions_hold(&retracting(80.0, 120.0, 220.0), true, 12);
 }
