@@ -52,7 +52,7 @@ fn the_controllers_of_the_examples_give_the_bits_of_the_simulation() {
     let excused = |error: &DeployedError| matches!(error, DeployedError::VirtualImpedance);
     assert!(refused.iter().all(|error| excused(error.as_ref().unwrap_err())), "{refused:?}");
     for (index, controller) in controllers.into_iter().flatten().enumerate() {
-        export_c::compare_always(&controller, &format!("example_{index}"));
+        export_c::compare_fused(&controller, &format!("example_{index}"));
         export_st::compare(&controller, 500, 1);
     }
 }

@@ -59,7 +59,7 @@ fn compiled(folder: &Path, humble: bool) {
 #[test]
 fn the_package_gives_the_bits_of_the_simulation() {
     let root = std::env::temp_dir().join(format!("phea_export_ros2_{}", std::process::id()));
-    for (seed, humble) in [(1, true), (2, false), (5, true), (7, false)] {
+    for (seed, humble) in [(5, true), (7, false)] {
         let deployed = drawn(seed);
         let folder = root.join(seed.to_string());
         written(&folder, &deployed, humble);
