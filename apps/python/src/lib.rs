@@ -3,6 +3,7 @@
 //! It converts and computes nothing: `phea_workbench` answers, and the modules in `python/phea`
 //! give every answer its class. The interface is described in `python/phea/_native.pyi`.
 
+mod alternatives;
 mod answer;
 mod bounds;
 mod chunks;
@@ -21,6 +22,8 @@ mod watch;
 /// The extension module.
 #[pyo3::pymodule(gil_used = false)]
 mod _native {
+    #[pymodule_export]
+    use crate::alternatives::{alternative_judged, alternatives_joined, alternatives_tasks};
     #[pymodule_export]
     use crate::answer::{FinishedAnswer, png_of};
     #[pymodule_export]

@@ -46,13 +46,7 @@ pub(crate) fn asked(name: &str, options: &Bound<'_, PyDict>) -> PyResult<Asked> 
             repair: options.get("repair")?.unwrap_or(true),
         },
         "simulate" => Request::Simulate(simulate(&options, files)?),
-        "alternatives" => Request::Alternatives(AlternativesRequest {
-            files,
-            front: options.get("front")?,
-            sweep: options.get("sweep")?,
-            points: options.get("points")?,
-            frequencies: options.get("frequencies")?,
-        }),
+        "alternatives" => Request::Alternatives(alternatives_request(&options)?),
         "campaign" => Request::Campaign(campaign(&options, files)?),
         "bench" => Request::Bench,
         "export" => Request::Export { kind: kind(&options.get::<String>("kind")?.unwrap_or_default())? },
@@ -94,6 +88,17 @@ fn simulate(options: &Options<'_, '_>, files: bool) -> PyResult<SimulateRequest>
         frequency_response: options.flag("frequency_response")?.then_some(of_sines),
         check: options.flag("check")?,
         ledgers: true,
+    })
+}
+
+/// Request on the alternatives of a project.
+pub(crate) fn alternatives_request(options: &Options<'_, '_>) -> PyResult<AlternativesRequest> {
+    Ok(AlternativesRequest {
+        files: options.get("files")?.unwrap_or(true),
+        front: options.get("front")?,
+        sweep: options.get("sweep")?,
+        points: options.get("points")?,
+        frequencies: options.get("frequencies")?,
     })
 }
 

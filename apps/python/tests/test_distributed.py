@@ -9,34 +9,8 @@ from typing import Any
 import pytest
 
 import phea
+from engine import Engine
 from phea import distributed
-
-
-class Engine:
-    """Engine that computes here: in order, reversed, or with a fault."""
-
-    def __init__(self, *, reverse: bool = False, version: str | None = None, fails_at: int = -1) -> None:
-        self._reverse = reverse
-        self._version = version
-        self._fails_at = fails_at
-        self.computed = 0
-        self.cancelled = 0
-
-    def identities(self) -> dict[str, str]:
-        return {"here": self._version or distributed.identity()}
-
-    def results(
-        self, work: Callable[..., Any], arguments: Sequence[tuple[Any, ...]]
-    ) -> Generator[tuple[int, Any], None, None]:
-        places = list(range(len(arguments)))
-        try:
-            for place in reversed(places) if self._reverse else places:
-                if self.computed == self._fails_at:
-                    raise RuntimeError("the cluster is gone")
-                self.computed += 1
-                yield place, work(*arguments[place])
-        finally:
-            self.cancelled = len(places) - self.computed
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +64,7 @@ def test_a_worker_that_joins_later_is_refused_too(
             self, work: Callable[..., Any], arguments: Sequence[tuple[Any, ...]]
         ) -> Generator[tuple[int, Any], None, None]:
             yield 0, work(*arguments[0])
-            monkeypatch.setattr(distributed, "identity", lambda: "0.0.1 (0123456789abcdef)")
+            monkeypatch.setattr("phea._workers.identity", lambda: "0.0.1 (0123456789abcdef)")
             yield 1, work(*arguments[1])
 
     table = tmp_path / "runs.csv"

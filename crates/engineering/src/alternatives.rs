@@ -14,20 +14,25 @@ mod error;
 mod front;
 mod hardware;
 mod no_number;
+mod plan;
 mod port;
 mod prepared;
 mod recentred;
 
-pub use cases::{JudgedCase, PreparedCase, prepared_cases};
+pub use cases::{JudgedLoad, PreparedLoad, prepared_load};
 pub use column_key::ColumnKey;
-pub use columns::{AlternativeColumn, AlternativeColumns, ColumnPart};
+pub use columns::{AlternativeColumn, AlternativeColumns, ColumnPart, WorstColumn, WorstColumns};
 pub use comparison::{
     ColumnSense, ComparedMeasure, ComparedMeasures, MEASURES, MEASURES_IF_STATED, dominates,
 };
 pub use error::{AlternativesError, JudgeError, NoHose, PrepareError};
-pub use front::{FeasibilityUnknown, Front, FrontColumn, FrontPoint, FrontRequest, FrontValue, NoFrontValue};
+pub use front::{
+    FeasibilityUnknown, FrontColumn, FrontPlan, FrontPoint, FrontRequest, FrontValue, NoFrontValue,
+    dominating,
+};
 pub use hardware::retracted_length;
 pub use no_number::{LengthUnknown, NoNumber};
+pub use plan::{AlternativeTask, AlternativesPlan, PlannedCase};
 pub use port::IMPEDANCE_AT;
 pub use prepared::{PreparedAlternative, prepared};
 pub use recentred::MovedRange;
@@ -45,20 +50,6 @@ use crate::simulate::{ScenarioRun, simulate_project};
 use crate::sizing::{Question, Sizing, size, sizing_problem};
 use crate::source::Source;
 use crate::trial::Agreement;
-use prepared::ReadingAgain;
-
-/// The project as declared and its alternatives, judged.
-#[derive(Clone, Debug)]
-pub struct Alternatives {
-    /// The declared project first, then its alternatives in file order.
-    pub judged: Vec<JudgedAlternative>,
-    /// Names of the alternatives that were not finished when `watch` cancelled.
-    pub not_reached: Vec<String>,
-    /// Results under each load case.
-    pub cases: Vec<JudgedCase>,
-    /// Fronts over a swept key, if requested.
-    pub front: Option<Front>,
-}
 
 /// Options for the alternatives of a project.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,22 +97,10 @@ pub struct JudgedAlternative {
     pub runs: Result<Vec<ScenarioRun>, JudgeError>,
 }
 
-impl Alternatives {
-    /// True if every alternative has a design, and every scenario ran to its end.
-    pub fn is_complete(&self) -> bool {
-        let front = self.front.as_ref().is_none_or(|front| front.not_reached == 0);
-        let all = |judged: &[JudgedAlternative], not_reached: &[String]| {
-            not_reached.is_empty() && judged.iter().all(JudgedAlternative::is_judged)
-        };
-        let cases = self.cases.iter().all(|case| all(&case.judged, &case.not_reached));
-        front && cases && all(&self.judged, &self.not_reached)
-    }
-}
-
 impl JudgedAlternative {
     /// True if the alternative has a design whose simulation gave results that describe the
     /// machine.
-    pub(crate) fn is_judged(&self) -> bool {
+    pub fn is_judged(&self) -> bool {
         let reliable = |runs: &Vec<ScenarioRun>| runs.iter().all(ScenarioRun::is_reliable);
         self.design.is_ok() && self.runs.as_ref().is_ok_and(reliable)
     }
@@ -158,82 +137,71 @@ impl JudgedAlternative {
     }
 }
 
-/// Judges the project as declared, and each of its alternatives, one after the other; then all of
-/// them again under each load case. If `watch` returns `false`, the current one and all later ones
-/// are not reached.
-///
-/// # Errors
-/// [`AlternativesError`]. Anything else that an alternative lacks is reported with that
-/// alternative.
-///
-/// # Example
-/// ```
-/// use phea_engineering::alternatives::{AlternativesError, AlternativesOptions, judge};
-/// use phea_project::{self as project, source::Memory};
-/// let source = Memory::default().with("rig.toml", include_str!("../../../examples/ybitu/hose.toml"));
-/// let loaded = project::read(&source, "rig.toml", &[], &[])?;
-/// let none = judge(&source, &loaded, &[], &AlternativesOptions::default(), &mut |_| true);
-/// assert!(matches!(none, Err(AlternativesError::NoAlternative)));
-/// # Ok::<(), phea_project::Refusal>(())
-/// ```
-pub fn judge(
-    source: &dyn Source,
-    loaded: &Loaded,
-    catalogues: &[String],
-    request: &AlternativesOptions,
-    watch: Watch<'_>,
-) -> Result<Alternatives, AlternativesError> {
-    if loaded.project.alternatives.is_empty() {
-        return Err(AlternativesError::NoAlternative);
-    }
-    if loaded.project.specifications.is_empty() {
-        return Err(AlternativesError::NoSpecification(DesignError::NoSpecification));
-    }
-    let motions = loaded.project.motions();
-    let planned = request.front.as_ref().map(|prepared| front::plan(prepared, motions)).transpose()?;
-    let (all, counted) = prepared(source, loaded, catalogues)?;
-    let cases = prepared_cases(source, loaded, catalogues)?;
-    let catalogue = catalogue::load(source, catalogues).map_err(AlternativesError::Refused)?;
-    let impedance_at = request.impedance_at.as_slice();
-    let judging = Judging { source, catalogue: &catalogue, all: &all, impedance_at, counted };
-    let swept = planned.as_ref().map_or(0, |plan| plan.values.len());
-    let rounds = (1 + cases.len() + swept) as f64;
-    let round = |watch: Watch<'_>, [first, last]: [f64; 2], progress: Progress| {
-        watch(Progress { fraction: (first + (last - first) * progress.fraction) / rounds, ..progress })
-    };
-    let (judged, not_reached) =
-        cases::judged(&judging, &all, true, &mut |progress| round(watch, [0.0, 1.0], progress));
-    let continues = not_reached.is_empty();
-    let until = 1.0 + cases.len() as f64;
-    let mut watched = |progress: Progress| round(watch, [1.0, until], progress);
-    let cases = cases::judged_cases(source, &catalogue, impedance_at, cases, continues, &mut watched);
-    let mut found = Alternatives { judged, not_reached, cases, front: None };
-    if let Some(plan) = planned {
-        let continues = continues && found.cases.iter().all(|case| case.not_reached.is_empty());
-        let again = ReadingAgain { source, catalogues };
-        let mut watched = |progress: Progress| round(watch, [until, rounds], progress);
-        found.front = Some(front::swept(&judging, &again, &all, &plan, continues, &mut watched));
-    }
-    Ok(found)
-}
-
 /// Fraction of the progress that the design takes; the scenarios take the rest.
 const DESIGNING: f64 = 0.7;
 
-/// Common inputs for the judgement of every alternative.
-pub(crate) struct Judging<'a> {
-    source: &'a dyn Source,
-    catalogue: &'a Catalogue,
-    all: &'a [PreparedAlternative],
-    impedance_at: &'a [f64],
-    counted: PartsCounted,
+/// Result of an [`AlternativeTask`].
+#[derive(Clone, Debug)]
+pub enum JudgedTask {
+    /// The alternative under a load.
+    Alternative(Box<JudgedAlternative>),
+    /// The alternative at a value of the front.
+    Point(FrontPoint),
 }
 
-impl Judging<'_> {
-    /// A judged alternative; `None` if `watch` cancels.
-    fn judged(&self, prepared: PreparedAlternative, watch: Watch<'_>) -> Option<JudgedAlternative> {
-        let outside = prepared.outside(self.all);
-        let PreparedAlternative { name, loaded, rig, no_hose, moved } = prepared;
+/// Common inputs for the judgement of every alternative.
+pub struct Judging<'a> {
+    source: &'a dyn Source,
+    catalogues: &'a [String],
+    catalogue: Catalogue,
+    plan: &'a AlternativesPlan,
+}
+
+impl<'a> Judging<'a> {
+    /// The inputs for a plan.
+    ///
+    /// # Errors
+    /// [`AlternativesError::Refused`] for a catalogue that cannot be read.
+    pub fn new(
+        source: &'a dyn Source,
+        catalogues: &'a [String],
+        plan: &'a AlternativesPlan,
+    ) -> Result<Judging<'a>, AlternativesError> {
+        let catalogue = catalogue::load(source, catalogues).map_err(AlternativesError::Refused)?;
+        Ok(Judging { source, catalogues, catalogue, plan })
+    }
+
+    /// Result of a task on the alternatives under its load; `None` if `watch` cancels, and for a
+    /// task of another plan. Anything that an alternative lacks is reported with that alternative.
+    pub fn judged(
+        &self,
+        prepared: &PreparedLoad,
+        task: AlternativeTask,
+        watch: Watch<'_>,
+    ) -> Option<JudgedTask> {
+        match task {
+            AlternativeTask::Alternative { place, .. } => {
+                let one = prepared.all.get(place)?.clone();
+                let judged = self.alternative(prepared, one, watch)?;
+                Some(JudgedTask::Alternative(Box::new(judged)))
+            }
+            AlternativeTask::Point { place, value } => {
+                let plan = self.plan.front.as_ref()?;
+                let at = (plan, *plan.values.get(value)?);
+                front::point(self, prepared, prepared.all.get(place)?, at, watch).map(JudgedTask::Point)
+            }
+        }
+    }
+
+    /// An alternative of those under a load; `None` if `watch` cancels.
+    fn alternative(
+        &self,
+        among: &PreparedLoad,
+        one: PreparedAlternative,
+        watch: Watch<'_>,
+    ) -> Option<JudgedAlternative> {
+        let outside = one.outside(&among.all);
+        let PreparedAlternative { name, loaded, rig, no_hose, moved } = one;
         let mut designing =
             |progress: Progress| watch(Progress { fraction: DESIGNING * progress.fraction, ..progress });
         let project = in_impedance_form(&loaded.project);
@@ -265,10 +233,10 @@ impl Judging<'_> {
             name,
             moved,
             outside,
-            impedance_at: self.impedance_at.to_vec(),
-            counted: self.counted,
+            impedance_at: self.plan.impedance_at.clone(),
+            counted: among.counted,
             rig: rig.map_err(JudgeError::from),
-            sizing: sized(setup, self.catalogue),
+            sizing: sized(setup, &self.catalogue),
             linearization: linearized(last),
             design,
             deployed,

@@ -13,6 +13,40 @@ pub struct DisplayUnit {
 }
 
 impl DisplayUnit {
+    /// All constants.
+    pub const ALL: [Self; 31] = [
+        Self::MILLIMETRE,
+        Self::METRE,
+        Self::SQUARE_CENTIMETRE,
+        Self::GIGAPASCAL,
+        Self::MILLILITRE,
+        Self::CUBIC_CENTIMETRE_PER_METRE,
+        Self::SECOND,
+        Self::MILLISECOND,
+        Self::HERTZ,
+        Self::LITRE_PER_MINUTE,
+        Self::MEGANEWTON_PER_METRE,
+        Self::METRE_PER_SECOND,
+        Self::NEWTON,
+        Self::KILONEWTON,
+        Self::NEWTON_METRE,
+        Self::DEGREE,
+        Self::RADIAN_PER_SECOND,
+        Self::KILONEWTON_METRE_PER_RADIAN,
+        Self::MILLIVOLT_PER_NEWTON_METRE,
+        Self::BAR,
+        Self::DEGREE_CELSIUS,
+        Self::JOULE,
+        Self::WATT,
+        Self::VOLT,
+        Self::MILLIVOLT_PER_NEWTON,
+        Self::DECIBEL,
+        Self::PERCENT,
+        Self::IN_HERTZ,
+        Self::IN_PERCENT,
+        Self::IN_DEGREES,
+        Self::ONE,
+    ];
     /// Length.
     pub const MILLIMETRE: Self = DisplayUnit { symbol: "mm", in_si: 1e-3 };
     /// Length.

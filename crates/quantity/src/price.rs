@@ -128,7 +128,7 @@ pub fn price_pattern(by: PricedBy) -> String {
 }
 
 /// Currencies of countries by ISO 4217.
-static CURRENCIES: [&str; 154] = [
+pub(super) static CURRENCIES: [&str; 154] = [
     "AED", "AFN", "ALL", "AMD", "ANG", "AOA", "ARS", "AUD", "AWG", "AZN", "BAM", "BBD", "BDT", "BGN", "BHD",
     "BIF", "BMD", "BND", "BOB", "BRL", "BSD", "BTN", "BWP", "BYN", "BZD", "CAD", "CDF", "CHF", "CLP", "CNY",
     "COP", "CRC", "CUP", "CVE", "CZK", "DJF", "DKK", "DOP", "DZD", "EGP", "ERN", "ETB", "EUR", "FJD", "FKP",

@@ -23,7 +23,7 @@ pub struct Units {
 }
 
 /// Symbols of the possible display units of projects.
-static SYMBOLS: [&str; 19] = [
+pub(super) static SYMBOLS: [&str; 19] = [
     "N", "kN", "MN", "lbf", "N.m", "kN.m", "mm", "cm", "m", "in", "deg", "rad", "bar", "MPa", "kPa", "psi",
     "L/min", "m3/s", "gpm",
 ];

@@ -318,3 +318,14 @@ fn a_scale_is_a_quantity_without_its_unit() {
         Some(Box::new(QuantityHint::NearUnit("bar")))
     );
 }
+
+/// A display unit is found again by its symbol and size, and none is missing in the list.
+#[test]
+fn display_units_have_known_symbols() {
+    let declared = include_str!("../src/display_unit.rs").matches(": Self = DisplayUnit {").count();
+    assert_eq!(DisplayUnit::ALL.len(), declared);
+    for unit in DisplayUnit::ALL {
+        assert_eq!(known_unit(unit.symbol, unit.in_si), Some(unit));
+    }
+    assert_eq!(known_unit("EUR", 1.0).unwrap().symbol, "EUR");
+}

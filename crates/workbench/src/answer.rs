@@ -29,7 +29,7 @@ pub(crate) use chosen_lines::hindrance_words;
 pub(crate) use describe::{Body, Describe, Field, Perhaps};
 pub(crate) use envelope::{SCHEMA, VERSION, envelope};
 pub(crate) use file_warning::FileWarningAnswer;
-pub(crate) use known::{Entries, KeyList, Keyed, OrReason, Reasoned};
+pub(crate) use known::{Entries, KeyList, Keyed, OrReason, PutTogether, Reasoned};
 pub(crate) use object::{Json, ObjectKey};
 pub(crate) use phea_derive::Answer;
 pub(crate) use pictures::picture_files;

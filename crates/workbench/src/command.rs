@@ -1,6 +1,7 @@
 //! The commands on a project: requests, and the answers that a shell prints and writes.
 
 mod alternatives;
+mod alternatives_tasks;
 mod answers;
 mod campaign;
 mod check;
@@ -20,8 +21,9 @@ mod simulate;
 mod unprinted;
 mod verify;
 
-pub use crate::error::CommandError;
+pub use crate::error::{CommandError, TaskResultError};
 pub use alternatives::AlternativesRequest;
+pub use alternatives_tasks::AlternativesTasks;
 pub use campaign::{CampaignChunks, CampaignRequest, CampaignRuns, campaign_watched};
 pub use friction::{FrictionRequest, friction_watched};
 pub use identification::{
@@ -42,7 +44,7 @@ pub use simulate::{FrequencyOptions, SimulateRequest};
 use std::borrow::Cow;
 
 use phea_dynamics::watch::{Stopped, rising, within};
-use phea_engineering::alternatives::{AlternativesOptions as RequestedOfAlternatives, judge};
+use phea_engineering::alternatives::AlternativesOptions as RequestedOfAlternatives;
 use phea_engineering::design::{design_and_repair, design_project};
 use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
 use phea_engineering::line_test::line_runs;
@@ -443,7 +445,7 @@ fn report_answer(
     let judged = alternatives
         .then(|| {
             let watch = &mut within(&mut *watch, [0.0, 0.5]);
-            judge(source, loaded, catalogues, &RequestedOfAlternatives::default(), watch)
+            alternatives::judged(source, loaded, catalogues, &RequestedOfAlternatives::default(), watch)
         })
         .transpose()?;
     if judged.as_ref().is_some_and(|judged| !judged.not_reached.is_empty()) {

@@ -2,8 +2,10 @@
 
 mod place;
 mod tables;
+mod task_result;
 mod words;
 
+pub use task_result::TaskResultError;
 pub(crate) use words::design_error_words;
 
 use phea_dynamics::linear::LinearError;
@@ -64,6 +66,9 @@ pub enum CommandError {
     /// No alternatives are judged.
     #[error(transparent)]
     Alternatives(AlternativesError),
+    /// Results of alternatives cannot be joined.
+    #[error(transparent)]
+    AlternativeResults(#[from] TaskResultError),
     /// Nothing to audit.
     #[error(transparent)]
     Audit(AuditError),

@@ -58,6 +58,7 @@ pub mod simulate;
 pub mod sizing;
 pub mod specification;
 pub mod trial;
+mod unit_encoding;
 mod verdict_words;
 
 pub use phea_engineering as engineering;

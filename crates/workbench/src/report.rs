@@ -39,7 +39,6 @@ pub use opening::{DecidedAnswer, DecisionAnswer};
 pub(crate) use stiffness::positions;
 
 use phea_dynamics::watch::{Watch, within};
-use phea_engineering::alternatives::Alternatives;
 use phea_engineering::audit::{ProjectAudit, TimeFinding};
 use phea_engineering::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of};
 use phea_engineering::linearize::{Linearization, linearize, stiffness_at_settings};
@@ -48,6 +47,7 @@ use phea_engineering::setup::Setup;
 use phea_engineering::sizing::{Question, Sizing, SizingError, SizingProblem, size};
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
+use crate::alternatives::PrintedAlternatives;
 use crate::answer::{OutputFile, picture_files, significant};
 use crate::audit::{CERTIFICATE_FILE, certificate_of};
 use crate::derived::{self, derive};
@@ -122,7 +122,7 @@ pub(crate) fn report_next_to(
     source: &dyn Source,
     loaded: &Loaded,
     (setup, problem): (&Setup<'_>, Option<&ProblemOfSizing>),
-    alternatives: Option<&Alternatives>,
+    alternatives: Option<&PrintedAlternatives>,
     watch: Watch<'_>,
 ) -> Result<Report, CommandError> {
     let project = &loaded.project;

@@ -9,6 +9,7 @@ mod figures;
 mod force_limits;
 mod foreseen;
 mod frequency;
+mod laid_over;
 mod metrics;
 mod occurrence_kind;
 mod reasons;
@@ -28,12 +29,13 @@ pub(crate) use document::{
     headline, measured, metrics_row, occurrence_sentences, published, published_row, requirement_of, windows,
 };
 pub(crate) use exceeded::exceeded_words;
-pub(crate) use figures::{comparison_files, figure_files, laid_over, pictures, turns};
+pub(crate) use figures::{comparison_files, figure_files, pictures, turns};
 pub(crate) use force_limits::{beyond_reach, force};
 pub(crate) use foreseen::foreseen_late;
 pub(crate) use frequency::{
     document as frequency_document, files as frequency_files, pictures as frequency_pictures,
 };
+pub(crate) use laid_over::{OverlaidRun, laid_over};
 pub(crate) use metrics::{cells_of, label_within, settling_cell, shown_in};
 pub(crate) use occurrence_kind::CampaignOccurrenceKind;
 pub(crate) use reasons::{status_words, unmeasured_words};

@@ -6,6 +6,7 @@ mod adjustment;
 mod against_the_load;
 mod alternatives;
 mod alternatives_front;
+mod alternatives_tasks;
 mod answer_schema;
 mod answers_described;
 mod benchmark;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from phea._request import answered
+from phea._request import MOST_POINTS, alternatives_options, answered
 from phea._texts import text_of, whole
 
 # `typing` takes longer to import than the package.
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     ExportKind: TypeAlias = Literal["c", "st", "ros2", "matlab", "python"]
     Progress: TypeAlias = bool | Callable[[str, float], object]
 
-# Greatest seed, number of runs, and number of threads and of points.
-MOST_SEED, MOST_RUNS, _MOST_THREADS, _MOST_POINTS = 2**32 - 1, 2**64 - 1, 2**16 - 1, 2**16 - 1
+# Greatest seed, number of runs, and number of threads.
+MOST_SEED, MOST_RUNS, _MOST_THREADS = 2**32 - 1, 2**64 - 1, 2**16 - 1
 
 
 class Commands:
@@ -75,7 +75,7 @@ class Commands:
 
         if points is not None and sweep is None:
             raise TypeError("linearize() takes points with a sweep")
-        whole("points", points, 1, _MOST_POINTS)
+        whole("points", points, 1, MOST_POINTS)
         return self._ask(LinearizeAnswer, "linearize", {"sweep": sweep, "points": points}, False)
 
     def verify(
@@ -258,13 +258,7 @@ class Commands:
         """
         from phea.answers import AlternativesAnswer
 
-        if (front is None) != (sweep is None):
-            raise TypeError("alternatives() takes front and sweep together")
-        if points is not None and sweep is None:
-            raise TypeError("alternatives() takes points with a sweep")
-        whole("points", points, 1, _MOST_POINTS)
-        options = {"front": front, "sweep": sweep, "points": points}
-        options |= {"frequencies": frequencies, "files": files}
+        options = alternatives_options(front, sweep, points, frequencies, files)
         return self._ask(AlternativesAnswer, "alternatives", options, progress)
 
     def bench(self, *, progress: Progress = False) -> answers.BenchAnswer:

@@ -7,14 +7,14 @@ from typing import Any, Protocol, TypeVar
 
 from phea._extras import imported
 
-# Times that an engine may repeat a chunk whose worker has died.
+# Times that an engine may repeat a task whose worker has died.
 _RETRIES = 3
 
 Result = TypeVar("Result")
 
 
 class Engine(Protocol):
-    """What a campaign needs of an engine."""
+    """What distributed work needs of an engine."""
 
     def identities(self) -> dict[str, str]:
         """Identity of the phea of each worker, by its name."""
@@ -32,7 +32,7 @@ class _Dask:
         self._client = client
 
     def identities(self) -> dict[str, str]:
-        from phea.distributed import identity
+        from phea._workers import identity
 
         found: dict[str, str] = self._client.run(identity)
         return found
@@ -59,7 +59,7 @@ class _Ray:
     def identities(self) -> dict[str, str]:
         from importlib import import_module
 
-        from phea.distributed import identity
+        from phea._workers import identity
 
         affinity = import_module("ray.util.scheduling_strategies").NodeAffinitySchedulingStrategy
         remote = self._ray.remote(num_cpus=0)(identity)

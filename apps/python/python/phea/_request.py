@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from phea import _native
+from phea._texts import whole
 from phea.errors import Interrupted, NoAnswer, ProjectError, Stopped
 
 # `typing` takes longer to import than the package.
@@ -10,12 +11,28 @@ TYPE_CHECKING = False
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from typing import TypeVar
+    from typing import Any, TypeVar
 
     from phea._project import Progress
     from phea._record import Answer
 
     AnyAnswer = TypeVar("AnyAnswer", bound=Answer)
+
+# Greatest number of points of a sweep.
+MOST_POINTS = 2**16 - 1
+
+
+def alternatives_options(
+    front: str | None, sweep: str | None, points: int | None, frequencies: str | None, files: bool
+) -> dict[str, Any]:
+    """Options of a request on alternatives, for the extension."""
+    if (front is None) != (sweep is None):
+        raise TypeError("alternatives() takes front and sweep together")
+    if points is not None and sweep is None:
+        raise TypeError("alternatives() takes points with a sweep")
+    whole("points", points, 1, MOST_POINTS)
+    options: dict[str, Any] = {"front": front, "sweep": sweep, "points": points}
+    return options | {"frequencies": frequencies, "files": files}
 
 
 def answered(

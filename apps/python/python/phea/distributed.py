@@ -1,26 +1,25 @@
-"""Campaigns and sweeps on a cluster: phea's chunks, an engine's scheduling.
+"""Campaigns, alternatives and sweeps on a cluster: phea's tasks, an engine's scheduling.
 
-Chunks of runs are pure tasks of a Dask client or of Ray; retries, spilling, dashboards and
-autoscaling are the engine's. The rows arrive in one table on the computer that asks, in the order
-of the runs, and are the bytes of `Project.campaign` on one machine.
+Chunks of runs and single alternatives are pure tasks of a Dask client or of Ray; retries, spilling,
+dashboards and autoscaling are the engine's. The rows arrive in one table on the computer that asks,
+in the order of the runs, and the results of alternatives in one answer: they are the bytes of
+`Project.campaign` and of `Project.alternatives` on one machine.
 """
 
 from __future__ import annotations
 
-import hashlib
 import os
-import socket
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from difflib import get_close_matches
-from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, overload
 
 from phea import _native
 from phea._commands import MOST_RUNS, MOST_SEED
-from phea._engines import Engine, engine_of
-from phea._request import translated
+from phea._engines import engine_of
+from phea._request import alternatives_options, answered, translated
 from phea._texts import whole
+from phea._workers import WorkerMismatch, expect_same_phea, expect_same_phea_here, identity
 from phea.errors import Stopped
 
 if TYPE_CHECKING:
@@ -39,7 +38,7 @@ if TYPE_CHECKING:
 
     Values: TypeAlias = Sequence[Value]
 
-__all__ = ["WorkerMismatch", "campaign", "identity", "sweep"]
+__all__ = ["WorkerMismatch", "alternatives", "campaign", "identity", "sweep"]
 
 # Commands of a sweep: the methods of a project that return an answer.
 _COMMANDS = (
@@ -50,60 +49,9 @@ _COMMANDS = (
 _CHUNK = 1000
 
 
-class WorkerMismatch(RuntimeError):
-    """Workers whose phea is another one than that of the computer that asks.
-
-    Attributes
-    ----------
-    workers
-        Identities by the names of these workers.
-    """
-
-    workers: dict[str, str]
-
-    def __init__(self, own: str, workers: dict[str, str]) -> None:
-        listed = "; ".join(f"{name} has {found}" for name, found in sorted(workers.items()))
-        super().__init__(f"every worker needs phea {own}: {listed}")
-        self.workers = workers
-        self._own = own
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (WorkerMismatch, (self._own, self.workers))
-
-
-def identity() -> str:
-    """Version and build of this phea: two that agree compute the same bytes.
-
-    Examples
-    --------
-    >>> identity() == identity(), identity().startswith(_native.VERSION)
-    (True, True)
-    """
-    return f"{_native.VERSION} ({_build()[:16]})"
-
-
-@cache
-def _build() -> str:
-    with open(str(_native.__file__), "rb") as library:
-        return hashlib.sha256(library.read()).hexdigest()
-
-
-def _expect_same_phea(engine: Engine) -> None:
-    own = identity()
-    others = {name: found for name, found in engine.identities().items() if found != own}
-    if others:
-        raise WorkerMismatch(own, others)
-
-
-def _expect_same_phea_here(expected: str) -> None:
-    """The check by a worker itself, which may have joined after the campaign began."""
-    if identity() != expected:
-        raise WorkerMismatch(expected, {socket.gethostname(): identity()})
-
-
 def _lines(project: Project, seed: int, first: int, end: int, expected: str) -> str:
     """Lines of a chunk, computed by a worker with one thread."""
-    _expect_same_phea_here(expected)
+    expect_same_phea_here(expected)
     try:
         return _native.campaign_lines(project._native, seed, first, end, 1)
     except _native.Refused as refused:
@@ -145,7 +93,7 @@ def campaign(
     whole("seed", seed, 0, MOST_SEED)
     whole("chunk", chunk, 1, MOST_RUNS)
     engine = engine_of(client)
-    _expect_same_phea(engine)
+    expect_same_phea(engine)
     table = _native.CampaignTable(os.fspath(out))
     try:
         with callable_of(progress, "campaign") as report:
@@ -179,6 +127,88 @@ def _in_order(
             place += 1
 
 
+def _judged(project: Project, options: dict[str, Any], place: int, expected: str) -> bytes:
+    """Result of one alternative, computed by a worker."""
+    expect_same_phea_here(expected)
+    try:
+        return _native.alternative_judged(project._native, options, place)
+    except _native.Refused as refused:
+        raise translated(refused) from None
+
+
+def alternatives(
+    project: Project,
+    client: Any,
+    *,
+    front: str | None = None,
+    sweep: str | None = None,
+    points: int | None = None,
+    frequencies: str | None = None,
+    files: bool = True,
+    progress: Progress = False,
+) -> AlternativesAnswer:
+    """Alternatives on a cluster, each a task, with the answer of `Project.alternatives`.
+
+    A task judges one alternative: of the declared load, of a load case, or at a point of a front.
+    It uses all cores of its computer, and returns what is printed about the alternative.
+
+    Parameters
+    ----------
+    client
+        A ``distributed.Client``, or the module ``ray`` after ``ray.init()``.
+    front, sweep, points, frequencies, files
+        As of `Project.alternatives`.
+    progress
+        ``True`` for a bar, or a callable that takes stage and fraction.
+
+    Raises
+    ------
+    WorkerMismatch
+        If the phea of a worker is another one, before any alternative is judged.
+
+    Examples
+    --------
+    >>> import phea
+    >>> class Here:  # an engine without other processes, in place of a client
+    ...     def identities(self):
+    ...         return {}
+    ...     def results(self, work, arguments):
+    ...         yield from ((place, work(*one)) for place, one in enumerate(arguments))
+    >>> late = '''
+    ... [[alternative]]
+    ... name = "late"
+    ... set = { "plant.delay" = "1 ms" }
+    ... '''
+    >>> project = phea.loads(phea.example("qft/unstable_plant").text + late)
+    >>> alternatives(project, Here()).json_text == project.alternatives().json_text
+    True
+    """
+    from phea._progress import callable_of
+    from phea.answers import AlternativesAnswer
+
+    name = "alternatives"
+    options = alternatives_options(front, sweep, points, frequencies, files)
+    engine = engine_of(client)
+    expect_same_phea(engine)
+    results: list[bytes] = []
+    with callable_of(progress, name) as report:
+        try:
+            count = _native.alternatives_tasks(project._native, options)
+        except _native.Refused as refused:
+            raise translated(refused) from None
+        arguments = [(project, options, place, identity()) for place in range(count)]
+        # whatever ends the loop, what is queued is cancelled at once
+        with closing(engine.results(_judged, arguments)) as arriving:
+            for _, result in arriving:
+                results.append(result)
+                if report is not None and report("judging", len(results) / count) is False:
+                    raise Stopped(f"{name} was stopped")
+    joined = _native.alternatives_joined
+    return answered(
+        AlternativesAnswer, name, lambda _: joined(project._native, options, results), False
+    )
+
+
 def _answer(
     project: Project,
     values: Mapping[str, Value],
@@ -187,7 +217,7 @@ def _answer(
     expected: str,
 ) -> Any:
     """Answer of a command on a project with other values, computed by a worker."""
-    _expect_same_phea_here(expected)
+    expect_same_phea_here(expected)
     return getattr(project.set(values), command)(**options)
 
 
@@ -261,7 +291,7 @@ def sweep(
         hint = f"; did you mean {near[0]!r}?" if near else ""
         raise ValueError(f"no command is called {command!r}{hint}")
     engine = engine_of(client)
-    _expect_same_phea(engine)
+    expect_same_phea(engine)
     arguments = [(project, {path: value}, command, options, identity()) for value in values]
     with closing(engine.results(_answer, arguments)) as results:
         found = dict(results)

@@ -1,4 +1,4 @@
-"""Campaigns on the engines themselves: Dask and Ray, with a worker that dies."""
+"""Campaigns and alternatives on the engines themselves: Dask and Ray, with a worker that dies."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import pytest
 
 import phea
 from phea import distributed
+from rigs import rig_with_alternatives
 
 RUNS = 2000
 
@@ -74,3 +75,18 @@ def test_ray_has_the_bytes_of_one_machine(
     table = tmp_path / "runs.csv"
     answer = distributed.campaign(project, runs=RUNS, out=table, client=ray, chunk=100)
     assert table.read_bytes() == rows and answer.complete
+
+
+def check_alternatives(client: Any) -> None:
+    project = rig_with_alternatives()
+    found, whole = distributed.alternatives(project, client), project.alternatives()
+    assert found.json_text == whole.json_text and found.text == whole.text
+    assert dict(found.files) == dict(whole.files)
+
+
+def test_dask_judges_alternatives(dask: Any) -> None:
+    check_alternatives(dask)
+
+
+def test_ray_judges_alternatives(ray: Any) -> None:
+    check_alternatives(ray)

@@ -60,9 +60,47 @@ impl AlternativeColumns {
         columns().filter_map(|(_, column)| column.value.clone().ok()).reduce(worse)
     }
 
+    /// Worst value of each column.
+    pub fn worst_of_each(&self) -> WorstColumns {
+        let each = ColumnKey::ALL.into_iter().filter_map(|key| {
+            let AlternativeColumn { unit, digits, .. } = *self.first(key)?;
+            Some(WorstColumn { key, unit, digits, value: self.worst(key) })
+        });
+        WorstColumns(each.collect())
+    }
+
     /// First column of that key.
     pub fn first(&self, key: ColumnKey) -> Option<&AlternativeColumn> {
         self.0.iter().map(|(_, column)| column).find(|column| column.key == key)
+    }
+}
+
+/// Worst value of a column over all parts of an alternative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorstColumn {
+    /// Key of the number.
+    pub key: ColumnKey,
+    /// Unit for display.
+    pub unit: DisplayUnit,
+    /// Significant digits for display; 0 for a whole number.
+    pub digits: usize,
+    /// Value, SI, if all that count have one.
+    pub value: Option<f64>,
+}
+
+/// Worst value of each column of an alternative.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WorstColumns(pub Vec<WorstColumn>);
+
+impl WorstColumns {
+    /// Worst value of that column.
+    pub fn value(&self, key: ColumnKey) -> Option<f64> {
+        self.find(key)?.value
+    }
+
+    /// The column of that key.
+    pub fn find(&self, key: ColumnKey) -> Option<&WorstColumn> {
+        self.0.iter().find(|column| column.key == key)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Pareto comparison of alternatives: one is at least as good as another in every compared measure.
 
-use super::{AlternativeColumns, ColumnKey};
+use super::{ColumnKey, WorstColumns};
 use crate::quantity::DisplayUnit;
 
 /// Sense in which a value of a column is better.
@@ -51,11 +51,11 @@ pub struct ComparedMeasure {
 
 impl ComparedMeasure {
     /// Measures by which alternatives can be compared: the four, and those that all of them state.
-    pub fn of_all(all: &[AlternativeColumns]) -> Vec<ComparedMeasure> {
+    pub fn of_all(all: &[WorstColumns]) -> Vec<ComparedMeasure> {
         let stated =
-            |key: ColumnKey| !all.is_empty() && all.iter().all(|columns| columns.worst(key).is_some());
+            |key: ColumnKey| !all.is_empty() && all.iter().all(|columns| columns.value(key).is_some());
         let if_stated = MEASURES_IF_STATED.into_iter().filter(|key| stated(*key));
-        let unit = |key: ColumnKey| all.iter().find_map(|columns| Some(columns.first(key)?.unit));
+        let unit = |key: ColumnKey| all.iter().find_map(|columns| Some(columns.find(key)?.unit));
         let measure = |key| ComparedMeasure { key, unit: unit(key).unwrap_or(DisplayUnit::ONE) };
         MEASURES.into_iter().chain(if_stated).map(measure).collect()
     }
@@ -72,8 +72,8 @@ pub struct ComparedMeasures(pub Vec<f64>);
 
 impl ComparedMeasures {
     /// Measures of an alternative; `None` if one does not exist.
-    pub fn of(columns: &AlternativeColumns, measures: &[ComparedMeasure]) -> Option<ComparedMeasures> {
-        measures.iter().map(|measure| columns.worst(measure.key)).collect::<Option<_>>().map(ComparedMeasures)
+    pub fn of(columns: &WorstColumns, measures: &[ComparedMeasure]) -> Option<ComparedMeasures> {
+        measures.iter().map(|measure| columns.value(measure.key)).collect::<Option<_>>().map(ComparedMeasures)
     }
 
     /// True if the alternative dominates another one in these measures.

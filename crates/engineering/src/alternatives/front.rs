@@ -1,10 +1,12 @@
 //! Pareto fronts: every alternative over a swept number of its project, by two or three columns.
 
-use phea_dynamics::watch::{Progress, Watch};
+use phea_dynamics::watch::Watch;
 
 use super::prepared::ReadingAgain;
 use super::{AlternativesError, JudgeError, NoNumber};
-use super::{ColumnKey, ColumnSense, JudgedAlternative, Judging, PreparedAlternative, dominates};
+use super::{
+    ColumnKey, ColumnSense, JudgedAlternative, Judging, PreparedAlternative, PreparedLoad, dominates,
+};
 use crate::design::DesignVerdict;
 use crate::linearize::{SweepRequest, points, range, values};
 use crate::option::OptionError;
@@ -38,25 +40,6 @@ pub struct FrontColumn {
     pub sense: ColumnSense,
 }
 
-/// Alternatives over a swept number.
-#[derive(Clone, Debug)]
-pub struct Front {
-    /// The motion of all alternatives.
-    pub motion: MotionKind,
-    /// The swept key.
-    pub path: String,
-    /// Unit for display.
-    pub unit: DisplayUnit,
-    /// SI unit of the values.
-    pub si: &'static str,
-    /// Two or three columns.
-    pub columns: Vec<FrontColumn>,
-    /// Points of each alternative, in the order of the output.
-    pub points: Vec<FrontPoint>,
-    /// Number of points that were not reached before `watch` cancelled.
-    pub not_reached: usize,
-}
-
 /// An alternative at one value of the swept number.
 #[derive(Clone, Debug)]
 pub struct FrontPoint {
@@ -72,8 +55,6 @@ pub struct FrontPoint {
     pub comparable: bool,
     /// Values of the columns.
     pub values: Vec<Result<FrontValue, NoFrontValue>>,
-    /// Points that dominate this one, by index in the list.
-    pub dominated_by: Vec<usize>,
 }
 
 /// A value of a column.
@@ -111,26 +92,21 @@ pub enum NoFrontValue {
     NotInEveryScenario,
 }
 
-impl FrontPoint {
-    /// True if no other point dominates this one.
-    pub fn is_on_front(&self) -> bool {
-        self.comparable && self.dominated_by.is_empty() && self.numbers().is_some()
-    }
-
-    /// Values of the point, SI, if all exist.
-    pub fn numbers(&self) -> Option<Vec<f64>> {
-        self.values.iter().map(|value| Some(value.as_ref().ok()?.value)).collect()
-    }
-}
-
-/// A parsed request.
-pub(super) struct FrontPlan {
-    motion: MotionKind,
-    columns: Vec<FrontColumn>,
-    path: String,
-    unit: DisplayUnit,
-    si: &'static str,
-    pub(super) values: Vec<f64>,
+/// Alternatives over a swept number, to be judged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrontPlan {
+    /// The motion of all alternatives.
+    pub motion: MotionKind,
+    /// Two or three columns.
+    pub columns: Vec<FrontColumn>,
+    /// The swept key.
+    pub path: String,
+    /// Unit for display.
+    pub unit: DisplayUnit,
+    /// SI unit of the values.
+    pub si: &'static str,
+    /// Values of the swept number, SI.
+    pub values: Vec<f64>,
 }
 
 impl FrontPlan {
@@ -217,80 +193,32 @@ fn column_of(text: &str, motion: MotionKind) -> Result<FrontColumn, FrontColumns
     Ok(FrontColumn { key, sense: wanted.unwrap_or(key.sense()) })
 }
 
-/// Judges every alternative at every value. The ranges of `[uncertainty]` follow the rig of each
-/// alternative.
-pub(super) fn swept(
+/// One point of the front, the ranges of `[uncertainty]` moved with the rig; `None` if `watch`
+/// cancels it.
+pub(super) fn point(
     judging: &Judging<'_>,
-    again: &ReadingAgain<'_>,
-    all: &[PreparedAlternative],
-    plan: &FrontPlan,
-    continues: bool,
-    watch: Watch<'_>,
-) -> Front {
-    let count = (all.len() * plan.values.len()) as f64;
-    let mut found: Vec<FrontPoint> = Vec::new();
-    let (mut not_reached, mut done) = (0, 0.0);
-    for one in all {
-        for &value in &plan.values {
-            let mut watched = |progress: Progress| {
-                watch(Progress { fraction: (done + progress.fraction) / count, ..progress })
-            };
-            let point = match continues && not_reached == 0 {
-                true => point(judging, again, one, plan, value, &mut watched),
-                false => None,
-            };
-            done += 1.0;
-            match point {
-                Some(point) => found.push(point),
-                None => not_reached += 1,
-            }
-        }
-    }
-    compare(&mut found, &plan.columns);
-    Front {
-        motion: plan.motion,
-        path: plan.path.clone(),
-        unit: plan.unit,
-        si: plan.si,
-        columns: plan.columns.clone(),
-        points: found,
-        not_reached,
-    }
-}
-
-/// One point of the front; `None` if `watch` cancels it.
-fn point(
-    judging: &Judging<'_>,
-    again: &ReadingAgain<'_>,
+    prepared: &PreparedLoad,
     one: &PreparedAlternative,
-    plan: &FrontPlan,
-    value: f64,
+    (plan, value): (&FrontPlan, f64),
     watch: Watch<'_>,
 ) -> Option<FrontPoint> {
     let alternative = one.name.clone();
-    let there = match at(again, one, &plan.path, value) {
+    let again = ReadingAgain { source: judging.source, catalogues: judging.catalogues };
+    let there = match at(&again, one, &plan.path, value) {
         Ok(there) => there,
         Err(error) => {
             let values = plan.columns.iter().map(|_| Err(NoFrontValue::NotPrepared(error.clone()))).collect();
             let feasible = Err(FeasibilityUnknown::NotPrepared(error));
-            let dominated_by = vec![];
-            return Some(FrontPoint {
-                alternative,
-                value,
-                feasible,
-                comparable: false,
-                values,
-                dominated_by,
-            });
+            return Some(FrontPoint { alternative, value, feasible, comparable: false, values });
         }
     };
-    let judged = judging.judged(there, watch)?;
+    let judged = judging.alternative(prepared, there, watch)?;
     let (comparable, values) = (plan.compares(&judged), values_of(&judged, plan, value));
     let feasible = judged.feasible().ok_or_else(|| match judged.design {
         Ok(view) => FeasibilityUnknown::Undecided(view.verdict()),
         Err(reason) => FeasibilityUnknown::NotDesigned(reason),
     });
-    Some(FrontPoint { alternative, value, feasible, comparable, values, dominated_by: vec![] })
+    Some(FrontPoint { alternative, value, feasible, comparable, values })
 }
 
 /// The alternative with the swept number, its uncertainty ranges moved with it.
@@ -329,16 +257,23 @@ fn values_of(
     plan.columns.iter().map(of).collect()
 }
 
-/// Determines which points dominate which.
-fn compare(points: &mut [FrontPoint], columns: &[FrontColumn]) {
+/// Places of the points that dominate each point, by the values of the columns of all of them; a
+/// point without values neither dominates nor is dominated.
+///
+/// # Example
+/// ```
+/// use phea_engineering::alternatives::{ColumnKey, ColumnSense, FrontColumn, dominating};
+/// let columns = [ColumnKey::Order, ColumnKey::Swept].map(|key| FrontColumn { key, sense: ColumnSense::Less });
+/// let points = [Some(vec![2.0, 1.0]), Some(vec![3.0, 1.0]), None, Some(vec![3.0, 0.5])];
+/// assert_eq!(dominating(&points, &columns), [vec![], vec![0, 3], vec![], vec![]]);
+/// ```
+pub fn dominating(points: &[Option<Vec<f64>>], columns: &[FrontColumn]) -> Vec<Vec<usize>> {
     let senses: Vec<ColumnSense> = columns.iter().map(|column| column.sense).collect();
-    let numbers: Vec<Option<Vec<f64>>> =
-        points.iter().map(|point| point.numbers().filter(|_| point.comparable)).collect();
-    for (point, own) in points.iter_mut().zip(&numbers) {
-        let Some(own) = own else { continue };
+    let of = |own: &Option<Vec<f64>>| {
+        let Some(own) = own else { return vec![] };
         let better =
             |other: &Option<Vec<f64>>| other.as_ref().is_some_and(|other| dominates(other, own, &senses));
-        let places = numbers.iter().enumerate().filter(|(_, other)| better(other));
-        point.dominated_by = places.map(|(place, _)| place).collect();
-    }
+        points.iter().enumerate().filter(|(_, other)| better(other)).map(|(place, _)| place).collect()
+    };
+    points.iter().map(of).collect()
 }

@@ -3,14 +3,16 @@
 mod columns;
 mod front;
 
-use phea_engineering::alternatives::{Alternatives, JudgedAlternative, JudgedCase, MovedRange};
+use phea_engineering::alternatives::{JudgedAlternative, MovedRange};
 use phea_qft::verification::Verdict;
 
 use super::document::first_warnings;
 use super::findings::{findings, of_case};
+use super::printed::{PrintedAlternative, PrintedAlternatives, PrintedCase};
 use super::words::judge_error_words;
-use crate::answer::{Answer, OrReason};
+use crate::answer::{Answer, OrReason, PutTogether};
 use crate::design::{self, DesignAnswer};
+use crate::quantity::MotionKind;
 use crate::trial::{self, TrialAnswer};
 use columns::{AlternativeColumnsAnswer, columns};
 use front::{FrontAnswer, front};
@@ -19,7 +21,7 @@ use front::{FrontAnswer, front};
 #[derive(Answer)]
 pub(crate) struct AlternativesAnswer {
     /// Project as it is declared, then its alternatives in the order of the file.
-    alternatives: Vec<AlternativeAnswer>,
+    alternatives: Vec<PutTogether<AlternativeAnswer>>,
     /// Names of the alternatives that were not finished when the command was stopped.
     not_reached: Vec<String>,
     /// Declared effects that the verdicts do not include.
@@ -41,7 +43,7 @@ struct LoadCaseAnswer {
     /// Settings of the load case, each `path=value`.
     settings: Vec<String>,
     /// Project as it is declared, then its alternatives in the order of the file.
-    alternatives: Vec<AlternativeAnswer>,
+    alternatives: Vec<PutTogether<AlternativeAnswer>>,
     /// Names of the alternatives that were not finished when the command was stopped.
     not_reached: Vec<String>,
     /// Comparison of the alternatives in sentences.
@@ -50,7 +52,7 @@ struct LoadCaseAnswer {
 
 /// Alternative with its own design.
 #[derive(Answer)]
-struct AlternativeAnswer {
+pub(super) struct AlternativeAnswer {
     /// Name of the alternative.
     name: String,
     /// Settings of the alternative, each `path=value`.
@@ -90,28 +92,33 @@ struct ParameterRangeAnswer {
 }
 
 /// Answer of `alternatives`.
-pub(crate) fn body(found: &Alternatives) -> AlternativesAnswer {
+pub(crate) fn body(found: &PrintedAlternatives) -> AlternativesAnswer {
     AlternativesAnswer {
-        alternatives: found.judged.iter().map(alternative).collect(),
+        alternatives: found.judged.iter().map(put_together).collect(),
         not_reached: found.not_reached.clone(),
         warnings: first_warnings(found),
         findings: findings(found),
-        load_cases: found.cases.iter().map(load_case).collect(),
+        load_cases: found.cases.iter().map(|case| load_case(case, found.motion)).collect(),
         front: found.front.as_ref().map(front),
     }
 }
 
-fn load_case(one: &JudgedCase) -> LoadCaseAnswer {
+fn load_case(one: &PrintedCase, motion: MotionKind) -> LoadCaseAnswer {
     LoadCaseAnswer {
         name: one.name.clone(),
         settings: one.settings.clone(),
-        alternatives: one.judged.iter().map(alternative).collect(),
+        alternatives: one.judged.iter().map(put_together).collect(),
         not_reached: one.not_reached.clone(),
-        findings: of_case(one),
+        findings: of_case(one, motion),
     }
 }
 
-fn alternative(one: &JudgedAlternative) -> AlternativeAnswer {
+fn put_together(one: &PrintedAlternative) -> PutTogether<AlternativeAnswer> {
+    PutTogether::new(one.body.clone())
+}
+
+/// Answer on one alternative.
+pub(super) fn alternative(one: &JudgedAlternative) -> AlternativeAnswer {
     let failed = one.design.as_ref().err().map_or(String::new(), judge_error_words);
     let view = one.design.as_ref().ok();
     let trial = view.and_then(|view| view.trial.as_ref());

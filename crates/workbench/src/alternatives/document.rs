@@ -1,24 +1,20 @@
 //! Alternatives for people: a summary, the findings, then the table of all numbers.
 
-use phea_engineering::alternatives::{
-    AlternativeColumn, AlternativeColumns, Alternatives, ColumnKey, ColumnPart, JudgedAlternative, NoNumber,
-};
-use phea_engineering::linearize::PortView;
-use phea_engineering::rig::OutsideParameter;
-use phea_engineering::simulate::ScenarioRun;
+use phea_engineering::alternatives::ColumnKey;
 
 use super::findings::findings;
 use super::front;
-use super::summary::{self, machine, motion_of};
-use super::words::{NOT_STATED, column_name, is_unstated, no_number_words};
-use crate::caveat::outside_parameters;
+use super::printed::{
+    MarkedOutcome, PassivityStatus, PrintedAlternative, PrintedAlternatives, PrintedColumn, PrintedPart,
+    Unprintable, at, parts,
+};
+use super::summary;
+use super::words::column_name;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
-use crate::specification::subject_words;
-use phea_qft::verification::Verdict;
 
 /// The table and the findings, after the most important warnings.
-pub(crate) fn output(found: &Alternatives) -> Document {
+pub(crate) fn output(found: &PrintedAlternatives) -> Document {
     let mut out = Document::default();
     out.warnings(first_warnings(found));
     out.append(document(found));
@@ -26,7 +22,7 @@ pub(crate) fn output(found: &Alternatives) -> Document {
 }
 
 /// The table and the findings; the figures follow.
-pub(crate) fn document(found: &Alternatives) -> Document {
+pub(crate) fn document(found: &PrintedAlternatives) -> Document {
     let mut out = Document::default();
     out.table(summary::table(found));
     out.heading_on_page("Findings");
@@ -48,12 +44,10 @@ pub(super) const WHOLE: usize = 17;
 const PART: usize = 6;
 
 /// The rigs that their families do not contain, and the remedy.
-pub(crate) fn first_warnings(found: &Alternatives) -> Vec<String> {
+pub(crate) fn first_warnings(found: &PrintedAlternatives) -> Vec<String> {
     let all = summary::groups(found).into_iter().flat_map(|(_, judged)| judged);
     let mut warnings: Vec<String> = Vec::new();
-    for sentence in
-        all.filter_map(|one| Some(outside_words(&one.name, one.outside.as_ref()?, !one.moved.is_empty())))
-    {
+    for sentence in all.filter_map(|one| one.sentences.outside.clone()) {
         if !warnings.contains(&sentence) {
             warnings.push(sentence);
         }
@@ -61,120 +55,72 @@ pub(crate) fn first_warnings(found: &Alternatives) -> Vec<String> {
     warnings
 }
 
-/// A sentence on ranges that do not contain the rig of an alternative, whether or not they were
-/// moved.
-pub(crate) fn outside_words(name: &str, outside: &[OutsideParameter], moved: bool) -> String {
-    let remedy = match moved {
-        false => "state them in `set`, or let them follow by `recentre = true`",
-        true => {
-            "`recentre` moved them by what the rigs differ, and the declared rig lies outside of its own: state them in `set`"
-        }
-    };
-    format!(
-        "{name}: the ranges of [uncertainty] do not contain its rig ({}): {remedy}",
-        outside_parameters(outside)
-    )
-}
-
 /// A row for each column, and a column for each alternative.
-fn table(found: &Alternatives) -> Table {
+fn table(found: &PrintedAlternatives) -> Table {
     let names = found.judged.iter().map(|one| one.name.clone());
     let mut rows = Table::grouped_by("", std::iter::once(String::new()).chain(names));
-    let all: Vec<AlternativeColumns> = found.judged.iter().map(JudgedAlternative::columns).collect();
-    let motion = motion_of(found);
-    let has_rig = found.judged.iter().any(|one| one.linearization.is_ok());
+    let all: Vec<&[PrintedColumn]> = found.judged.iter().map(|one| one.columns.as_slice()).collect();
+    let has_rig = found.judged.iter().any(|one| one.has_models);
     for part in parts(&all) {
         let keys = keys(&all, &part);
-        let always = part == ColumnPart::Loop || (part == ColumnPart::Rig && has_rig);
+        let always = part == PrintedPart::Loop || (part == PrintedPart::Rig && has_rig);
         if keys.is_empty() && !always {
             continue;
         }
         rows.group(group(&part));
-        if part == ColumnPart::Loop {
+        if part == PrintedPart::Loop {
             rows.row(words("feasible", found, feasible));
-            rows.row(words("stable with its load", found, stable));
-            rows.row(words("nonlinear simulation", found, machine));
+            rows.row(words("stable with its load", found, |one| status(one.stable.as_ref())));
+            rows.row(words("nonlinear simulation", found, |one| status(one.machine.as_ref())));
         }
-        let settling = summary::settling(found.judged.iter(), |run| is_of(run, &part));
+        let settling = summary::settling(found.judged.iter(), |scenario| is_of(scenario, &part));
         for key in keys {
             let name = match key {
                 ColumnKey::SettlingTime => settling.clone(),
-                key => column_name(key, motion).into(),
+                key => column_name(key, found.motion).into(),
             };
             let cells = all.iter().map(|columns| cell(columns, &part, key));
             rows.row(std::iter::once(name).chain(cells));
         }
-        if part == ColumnPart::Rig && has_rig {
-            rows.row(words("passive, open loop", found, |one| port(one, false)));
-            rows.row(words("passive, closed loop", found, |one| port(one, true)));
+        if part == PrintedPart::Rig && has_rig {
+            rows.row(words("passive, open loop", found, |one| passivity(one.passive[0])));
+            rows.row(words("passive, closed loop", found, |one| passivity(one.passive[1])));
         }
     }
     rows
 }
 
-fn is_of(run: &ScenarioRun, part: &ColumnPart) -> bool {
-    matches!(part, ColumnPart::Scenario(name) if *name == run.name)
+fn is_of(scenario: &str, part: &PrintedPart) -> bool {
+    matches!(part, PrintedPart::Scenario(name) if name == scenario)
 }
 
-fn words(name: &str, found: &Alternatives, of: fn(&JudgedAlternative) -> Cell) -> Vec<Cell> {
+fn words(name: &str, found: &PrintedAlternatives, of: fn(&PrintedAlternative) -> Cell) -> Vec<Cell> {
     std::iter::once(name.into()).chain(found.judged.iter().map(of)).collect()
 }
 
-fn feasible(one: &JudgedAlternative) -> Cell {
-    match one.feasible() {
+fn feasible(one: &PrintedAlternative) -> Cell {
+    match one.feasible {
         Some(true) => Cell::from("yes").marked(true),
         Some(false) => Cell::from("no").marked(false),
         None => "not known".into(),
     }
 }
 
-/// Cell that shows whether every plant of the family, with the declared load, is stable in the
-/// designed loop.
-pub(super) fn stable(one: &JudgedAlternative) -> Cell {
-    let view = one.design.as_ref().ok();
-    match view.map(|view| view.designed.view.audit.stability.verdict) {
-        Some(Verdict::Met) => Cell::from("yes").marked(true),
-        Some(Verdict::Violated) => Cell::from("no").marked(false),
-        Some(Verdict::NotProven) => "not proven".into(),
-        None => Cell::Missing,
-    }
+/// Cell of an outcome.
+pub(super) fn status(status: Option<&MarkedOutcome>) -> Cell {
+    status.map(MarkedOutcome::cell).into()
 }
 
-/// Cell that shows whether the impedance at the load is passive, or the number of bands in which it
-/// is not.
-pub(super) fn port(one: &JudgedAlternative, closed: bool) -> Cell {
-    let Ok(found) = &one.linearization else { return Cell::Missing };
-    let designed = found.closed_loop.as_ref().filter(|_| one.deployed.is_ok());
-    let view: Option<&PortView> = if closed { designed } else { Some(&found.open_loop) };
-    let Some(report) = view.map(|view| &view.passivity) else { return Cell::Missing };
-    match (report.passive, report.bands.first(), report.bands.len()) {
-        (true, ..) => "yes".into(),
-        (false, Some(band), 1) => {
-            let from = Cell::number_in(band.from_rad_per_s, 3, DisplayUnit::HERTZ);
-            let to = Cell::quantity(band.to_rad_per_s, 3, DisplayUnit::HERTZ);
-            from.between("not in ", " to ").then(to)
-        }
-        (false, None, _) => "no".into(),
-        (false, Some(_), bands) => Cell::count(bands).between("not in ", " bands"),
-    }
-}
-
-/// The parts of all alternatives, in the order in which they first come.
-pub(super) fn parts(all: &[AlternativeColumns]) -> Vec<ColumnPart> {
-    let mut parts = Vec::new();
-    for (part, _) in all.iter().flat_map(|columns| &columns.0) {
-        if !parts.contains(part) {
-            parts.push(part.clone());
-        }
-    }
-    parts
+/// Cell of the passivity of the impedance at the load.
+pub(super) fn passivity(status: Option<PassivityStatus>) -> Cell {
+    status.map(PassivityStatus::cell).into()
 }
 
 /// The keys of a part for which some alternative has a value, or should state one.
-fn keys(all: &[AlternativeColumns], part: &ColumnPart) -> Vec<ColumnKey> {
+fn keys(all: &[&[PrintedColumn]], part: &PrintedPart) -> Vec<ColumnKey> {
     let mut keys = Vec::new();
-    let columns = all.iter().flat_map(|columns| &columns.0).filter(|(own, _)| own == part);
-    for (_, AlternativeColumn { key, .. }) in columns.filter(|(_, column)| is_shown(column)) {
+    let columns = all.iter().copied().flatten().filter(|column| column.part == *part);
+    for PrintedColumn { key, .. } in columns.filter(|column| column.is_shown()) {
         if !keys.contains(key) {
             keys.push(*key);
         }
@@ -182,40 +128,25 @@ fn keys(all: &[AlternativeColumns], part: &ColumnPart) -> Vec<ColumnKey> {
     keys
 }
 
-fn is_shown(column: &AlternativeColumn) -> bool {
-    column.value.as_ref().map_or_else(is_unstated, |_| true)
-}
-
-/// A column of an alternative.
-pub(super) fn at<'c>(
-    columns: &'c AlternativeColumns,
-    part: &ColumnPart,
-    key: ColumnKey,
-) -> Option<&'c AlternativeColumn> {
-    columns.0.iter().find(|(own, column)| own == part && column.key == key).map(|(_, column)| column)
-}
-
-fn cell(columns: &AlternativeColumns, part: &ColumnPart, key: ColumnKey) -> Cell {
+fn cell(columns: &[PrintedColumn], part: &PrintedPart, key: ColumnKey) -> Cell {
     let Some(column) = at(columns, part, key) else { return Cell::Missing };
     match &column.value {
         Ok(value) if key == ColumnKey::WorstMargin => Cell::margin(*value),
         Ok(value) if column.digits == 0 => Cell::short(*value, WHOLE, DisplayUnit::ONE),
         Ok(value) => Cell::quantity(*value, column.digits, column.unit),
-        // the table of its part lists what is missing
-        Err(reason @ NoNumber::Parts(_)) if is_unstated(reason) => no_number_words(reason).into(),
-        Err(reason) if is_unstated(reason) => NOT_STATED.into(),
-        Err(_) => Cell::Missing,
+        Err(Unprintable::NotStated(words)) => words.as_str().into(),
+        Err(Unprintable::Absent) => Cell::Missing,
     }
 }
 
-fn group(part: &ColumnPart) -> Cell {
+fn group(part: &PrintedPart) -> Cell {
     match part {
-        ColumnPart::Loop => "loop".into(),
-        ColumnPart::Rig => "rig".into(),
-        ColumnPart::Impedance(frequency) => {
+        PrintedPart::Loop => "loop".into(),
+        PrintedPart::Rig => "rig".into(),
+        PrintedPart::Impedance(frequency) => {
             Cell::from("|Z| at ").then(Cell::quantity(*frequency, 4, DisplayUnit::RADIAN_PER_SECOND))
         }
-        ColumnPart::Specification(index, name) => Cell::count(index + 1).then(" ").then(subject_words(*name)),
-        ColumnPart::Scenario(name) => Cell::Code(name.clone()),
+        PrintedPart::Specification(index, subject) => Cell::count(index + 1).then(" ").then(subject.as_str()),
+        PrintedPart::Scenario(name) => Cell::Code(name.clone()),
     }
 }

@@ -1,47 +1,39 @@
 //! Findings on the columns, in sentences that are read in a minute: specifications that are met,
 //! contradictions by the machine, the best values, dominance, and the costs of each alternative.
 
-use phea_engineering::alternatives::{
-    AlternativeColumns, Alternatives, ColumnKey, ComparedMeasure, ComparedMeasures, JudgedAlternative,
-    JudgedCase, MovedRange,
-};
-use phea_engineering::simulate::{ScenarioRun, required_of_run};
-use phea_engineering::trial::Agreement;
-use phea_qft::design::ControllerChoice;
-use phea_qft::design::DesignStatus;
+use phea_engineering::alternatives::{ColumnKey, ComparedMeasure, ComparedMeasures, WorstColumns};
 
-use super::words::{judge_error_words, measure_name};
-use crate::caveat;
-use crate::design::verdict_sentence;
+use super::printed::{PrintedAlternative, PrintedAlternatives, PrintedCase};
+use super::words::measure_name;
 use crate::grouped::grouped;
-use crate::project::{AS_DECLARED, ImpedanceForm, LINEAR_PARAMETERS};
-use crate::quantity::{DisplayUnit, MotionKind, MotionWords, fitting, significant};
-use crate::simulate::requirement_sentence;
-use crate::trial::{finding_words, run_name};
+use crate::project::AS_DECLARED;
+use crate::quantity::{DisplayUnit, MotionKind, significant};
 
 /// Findings for the declared load, and then for each load case.
-pub(crate) fn findings(found: &Alternatives) -> Vec<String> {
-    let mut sentences = of_judged(&found.judged, found.not_reached.len());
+pub(crate) fn findings(found: &PrintedAlternatives) -> Vec<String> {
+    let mut sentences = of_judged(&found.judged, found.not_reached.len(), found.motion);
     sentences.extend(ranges(&found.judged));
-    sentences.extend(costs(&MeasuredAlternatives::of(found.judged.iter())));
+    sentences.extend(costs(&MeasuredAlternatives::of(found.judged.iter(), found.motion)));
     sentences.extend(found.not_reached.iter().map(|name| format!("{name}: not reached")));
     for case in &found.cases {
-        sentences.extend(of_case(case).into_iter().map(|sentence| format!("{}: {sentence}", case.name)));
+        sentences.extend(
+            of_case(case, found.motion).into_iter().map(|sentence| format!("{}: {sentence}", case.name)),
+        );
     }
     sentences
 }
 
 /// Findings for a load case.
-pub(super) fn of_case(case: &JudgedCase) -> Vec<String> {
+pub(super) fn of_case(case: &PrintedCase, motion: MotionKind) -> Vec<String> {
     let not_reached = case.not_reached.iter().map(|name| format!("{name}: not reached"));
-    of_judged(&case.judged, case.not_reached.len()).into_iter().chain(not_reached).collect()
+    of_judged(&case.judged, case.not_reached.len(), motion).into_iter().chain(not_reached).collect()
 }
 
-fn of_judged(judged: &[JudgedAlternative], not_reached: usize) -> Vec<String> {
+fn of_judged(judged: &[PrintedAlternative], not_reached: usize, motion: MotionKind) -> Vec<String> {
     let mut sentences = specifications(judged, not_reached);
-    sentences.extend(judged.iter().flat_map(missing));
-    sentences.extend(grouped_by_sentence(judged, judged.iter().flat_map(lacking)));
-    let comparable = MeasuredAlternatives::of(judged.iter().filter(|one| one.is_comparable()));
+    sentences.extend(judged.iter().flat_map(|one| one.sentences.missed.clone()));
+    sentences.extend(lacking(judged));
+    let comparable = MeasuredAlternatives::of(judged.iter().filter(|one| one.is_comparable), motion);
     sentences.extend(best(&comparable));
     sentences.extend(dominance(&comparable));
     sentences
@@ -56,14 +48,14 @@ struct MeasuredAlternatives {
 
 impl MeasuredAlternatives {
     /// Selects the alternatives that have the four measures.
-    fn of<'j>(judged: impl Iterator<Item = &'j JudgedAlternative>) -> MeasuredAlternatives {
-        let mut judged = judged.peekable();
-        let motion = judged.peek().map(|one| one.loaded.project.motion()).unwrap_or_default();
-        let columns: Vec<_> = judged.map(|one| (one.name.clone(), one.columns())).collect();
+    fn of<'j>(
+        judged: impl Iterator<Item = &'j PrintedAlternative>,
+        motion: MotionKind,
+    ) -> MeasuredAlternatives {
         let four = ComparedMeasure::of_all(&[]);
-        let has_four = |columns: &AlternativeColumns| ComparedMeasures::of(columns, &four).is_some();
-        let columns: Vec<_> = columns.into_iter().filter(|(_, columns)| has_four(columns)).collect();
-        let (names, columns): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
+        let has_four = |one: &&PrintedAlternative| ComparedMeasures::of(&one.worst, &four).is_some();
+        let measured = judged.filter(has_four).map(|one| (one.name.clone(), one.worst.clone()));
+        let (names, columns): (Vec<String>, Vec<WorstColumns>) = measured.unzip();
         let measures = ComparedMeasure::of_all(&columns);
         let measured = columns.iter().filter_map(|columns| ComparedMeasures::of(columns, &measures));
         MeasuredAlternatives { motion, all: names.into_iter().zip(measured).collect(), measures }
@@ -84,29 +76,16 @@ impl MeasuredAlternatives {
 /// The measures of dominance in words.
 const FOUR: [&str; 4] = ["disturbance", "control effort", "order", "delay tolerated"];
 
-/// Requirements in time that an alternative misses in its scenarios.
-fn missing(one: &JudgedAlternative) -> Vec<String> {
-    let Ok(runs) = &one.runs else { return vec![] };
-    let missed = |run: &ScenarioRun| -> Vec<String> {
-        let found = required_of_run(&one.loaded.project, run).into_iter();
-        let missed = found.filter(|held| held.is_satisfied() == Some(false));
-        missed.map(|held| format!("{} in `{}` {}", one.name, run.name, requirement_sentence(&held))).collect()
-    };
-    runs.iter().flat_map(missed).collect()
-}
-
 /// Sentences on alternatives that meet every specification, on those that miss some and by how
 /// much, and on other outcomes of a design.
-fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<String> {
-    let named = |which: &dyn Fn(&JudgedAlternative) -> Option<String>| {
-        judged.iter().filter_map(which).collect::<Vec<_>>()
-    };
-    let met = named(&|one| (one.feasible() == Some(true)).then(|| one.name.clone()));
-    let missed = named(&|one| {
-        let status = &one.design.as_ref().ok()?.design.status;
-        let DesignStatus::Infeasible(relaxation) = status else { return None };
-        Some(format!("{} ({} dB)", one.name, significant(relaxation.relaxation_db, 2)))
+fn specifications(judged: &[PrintedAlternative], not_reached: usize) -> Vec<String> {
+    let met = judged.iter().filter(|one| one.feasible == Some(true)).map(|one| one.name.clone());
+    let met: Vec<String> = met.collect();
+    let missed = judged.iter().filter_map(|one| {
+        let relaxation_db = one.infeasible_by_db?;
+        Some(format!("{} ({} dB)", one.name, significant(relaxation_db, 2)))
     });
+    let missed: Vec<String> = missed.collect();
     let mut sentences = vec![];
     match (met.as_slice(), judged.len()) {
         ([], _) => {}
@@ -123,39 +102,26 @@ fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<Strin
             missed.join(", ")
         ));
     }
-    let otherwise = named(&|one| match &one.design {
-        Err(reason) => Some(format!("{}: not judged: {}", one.name, judge_error_words(reason))),
-        Ok(view) if matches!(view.design.status, DesignStatus::Infeasible(_)) => None,
-        Ok(_) if one.feasible() == Some(true) => None,
-        Ok(view) => {
-            Some(format!("{}: {}", one.name, verdict_sentence(&view.verdict(), one.loaded.project.motion())))
-        }
-    });
-    sentences.extend(otherwise);
+    sentences.extend(judged.iter().filter_map(|one| one.sentences.otherwise.clone()));
     sentences
 }
 
 /// The greatest order, if the orders were free and equal for all.
-fn order_words(judged: &[JudgedAlternative]) -> String {
-    let orders = judged.iter().filter_map(|one| match one.design.as_ref().ok()?.options.controller {
-        ControllerChoice::Grow { maximum_order } | ControllerChoice::Any { maximum_order, .. } => {
-            Some(maximum_order)
-        }
-        ControllerChoice::Given(_) | ControllerChoice::Named { .. } => None,
-    });
-    let orders: Vec<usize> = orders.collect();
+fn order_words(judged: &[PrintedAlternative]) -> String {
+    let orders: Vec<usize> = judged.iter().filter_map(|one| one.maximum_order).collect();
     match orders.first() {
         Some(first) if orders.iter().all(|order| order == first) => format!(" of order {first} at most"),
         _ => String::new(),
     }
 }
 
-/// Each sentence once, after the names of all alternatives to which it applies; if it applies to
-/// most of them, after the names of the exceptions.
-fn grouped_by_sentence<'a>(
-    judged: &'a [JudgedAlternative],
-    sentences: impl Iterator<Item = (&'a str, String)>,
-) -> Vec<String> {
+/// What the verdicts do not include, each sentence once, after the names of all alternatives to
+/// which it applies; if it applies to most of them, after the names of the exceptions.
+fn lacking(judged: &[PrintedAlternative]) -> Vec<String> {
+    let sentences = judged.iter().flat_map(|one| {
+        let lacking = one.sentences.lacking.iter();
+        lacking.map(|sentence| (sentence.clone(), one.name.as_str()))
+    });
     let others = |names: &[&str]| {
         let others = judged.iter().map(|one| one.name.as_str()).filter(|name| !names.contains(name));
         others.collect::<Vec<_>>()
@@ -167,76 +133,13 @@ fn grouped_by_sentence<'a>(
         }
         _ => format!("{}: {sentence}", names.join(", ")),
     };
-    grouped(sentences.map(|(name, sentence)| (sentence, name))).into_iter().map(words).collect()
-}
-
-/// Contradictions by the machine, effects that the verdict leaves out, and the reason why nothing
-/// was driven.
-fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
-    let view = one.design.as_ref().ok();
-    let runs =
-        view.and_then(|view| view.trial.as_ref()).map(|trial| trial.runs.as_slice()).unwrap_or_default();
-    let contradicts: Vec<_> = runs.iter().filter(|run| run.agreement == Agreement::Contradicts).collect();
-    let contradicts = contradicts.split_first().map(|(first, further)| {
-        // the remedy is in the reason after the first sentence, and with `design`
-        let reason = finding_words(&first.reason.finding, first.units);
-        let further = match further.len() {
-            0 => String::new(),
-            1 => ", and in another run".to_string(),
-            count => format!(", and in {count} further runs"),
-        };
-        format!("the nonlinear simulation contradicts the verdict: {}: {reason}{further}", run_name(first))
-    });
-    let caveats = view.map(|view| &view.designed.view);
-    let caveats = caveats.into_iter().flat_map(|view| caveat::sentences(&view.caveats, &view.units));
-    let impedance = impedance(one).into_iter().flatten();
-    let not_driven = one.runs.as_ref().err().filter(|_| view.is_some()).map(|reason| reason.to_string());
-    contradicts
-        .into_iter()
-        .chain(caveats)
-        .chain(impedance)
-        .chain(not_driven)
-        .map(|sentence| (one.name.as_str(), sentence))
-        .collect()
-}
-
-/// Properties that are compared for a loop with a virtual impedance at the load.
-fn impedance(one: &JudgedAlternative) -> Option<Vec<String>> {
-    let declared = one.loaded.project.controller.as_ref()?.impedance?;
-    let MotionWords { force, position, .. } = one.loaded.project.motion().words();
-    let form = (declared.form == ImpedanceForm::Admittance).then(|| {
-        format!(
-            "designed as the same loop with form = \"impedance\": of the {position} it is C_x = G (M_v s^2 + B_v s + K_v)"
-        )
-    });
-    let disturbance_words = format!(
-        "the disturbance is the whole change of the {force}, and counts what the virtual impedance asks for: the impedances at the \
-         load show how near it comes"
-    );
-    Some(form.into_iter().chain([disturbance_words]).collect())
+    grouped(sentences).into_iter().map(words).collect()
 }
 
 /// The ranges that follow a rig, in one sentence.
-fn ranges(judged: &[JudgedAlternative]) -> Option<String> {
-    let each = judged.iter().flat_map(|one| {
-        let motion = one.loaded.project.motion();
-        one.moved.iter().map(move |range| moved_words(&one.name, range, motion))
-    });
-    let each: Vec<String> = each.collect();
+fn ranges(judged: &[PrintedAlternative]) -> Option<String> {
+    let each: Vec<&str> = judged.iter().flat_map(|one| &one.sentences.moved).map(String::as_str).collect();
     (!each.is_empty()).then(|| format!("ranges that follow the rig: {}", each.join("; ")))
-}
-
-fn moved_words(name: &str, range: &MovedRange, motion: MotionKind) -> String {
-    let [[_, least, greatest], [_, less, more]] = [range.stated, range.moved];
-    let known = LINEAR_PARAMETERS.iter().find(|parameter| parameter.key.name == range.name);
-    let unit = known.map_or(DisplayUnit::ONE, |known| match known.key.dimension.si {
-        "N/m" => motion.unit(DisplayUnit::MEGANEWTON_PER_METRE),
-        _ => fitting(more.abs(), motion.dimension(known.key.dimension)),
-    });
-    let number = |value: f64| unit.number(value, 3);
-    let moved = unit.with_symbol(format!("{} to {}", number(less), number(more)));
-    let stated = unit.with_symbol(format!("{} to {}", number(least), number(greatest)));
-    format!("{name}, {} {moved} in place of {stated}", range.name)
 }
 
 /// The best alternative in each measure, among those that may be compared.

@@ -1,14 +1,13 @@
 //! A row for each alternative, under the declared load and under each load case: the numbers needed
 //! for a decision, before the table of all numbers.
 
-use phea_engineering::alternatives::{AlternativeColumns, Alternatives, ColumnKey, JudgedAlternative};
-use phea_engineering::simulate::ScenarioRun;
+use phea_engineering::alternatives::{ColumnKey, WorstColumns};
 
-use super::document::WHOLE;
+use super::document::{WHOLE, status};
+use super::printed::{PrintedAlternative, PrintedAlternatives};
 use crate::document::{Cell, Table};
-use crate::quantity::{DisplayUnit, MotionKind};
+use crate::quantity::DisplayUnit;
 use crate::simulate::settling_cell;
-use crate::verdict_words::agreement_word;
 
 /// Name of the group of the project's declared load, if there are load cases too.
 pub(super) const DECLARED_LOAD: &str = "declared load";
@@ -27,17 +26,10 @@ const COMPARED_AT_A_GLANCE: [(ColumnKey, &str); 9] = [
     (ColumnKey::PartsMass, "mass"),
 ];
 
-/// The motion of all alternatives: none replaces its cylinder by a motor.
-pub(super) fn motion_of(found: &Alternatives) -> MotionKind {
-    found.judged.first().map(|one| one.loaded.project.motion()).unwrap_or_default()
-}
-
 /// The table.
-pub(super) fn table(found: &Alternatives) -> Table {
+pub(super) fn table(found: &PrintedAlternatives) -> Table {
     let groups = groups(found);
-    let all: Vec<Vec<AlternativeColumns>> =
-        groups.iter().map(|(_, judged)| judged.iter().map(JudgedAlternative::columns).collect()).collect();
-    let shown = shown(all.iter().flatten());
+    let shown = shown(groups.iter().flat_map(|(_, judged)| judged.iter()));
     let settling = settling(groups.iter().flat_map(|(_, judged)| judged.iter()), |_| true);
     let words = shown.iter().map(|(key, words)| match *key {
         ColumnKey::SettlingTime => settling.text(),
@@ -49,45 +41,44 @@ pub(super) fn table(found: &Alternatives) -> Table {
         1 => Table::new(headings),
         _ => Table::grouped_by("load", headings),
     };
-    for ((name, judged), columns) in groups.iter().zip(&all) {
+    for (name, judged) in &groups {
         if groups.len() > 1 {
             rows.group(*name);
         }
-        for (one, columns) in judged.iter().zip(columns) {
-            let numbers = shown.iter().map(|(key, _)| number(columns, *key));
-            let own = [one.name.clone().into(), specifications(one), machine(one)];
+        for one in *judged {
+            let numbers = shown.iter().map(|(key, _)| number(&one.worst, *key));
+            let own = [one.name.clone().into(), specifications(one), status(one.machine.as_ref())];
             rows.row(own.into_iter().chain(numbers));
         }
     }
     rows
 }
 
-/// The word for the settling times of some runs, with the bands in which they settle.
+/// The word for the settling times in some scenarios, with the bands in which they settle.
 pub(super) fn settling<'a>(
-    all: impl Iterator<Item = &'a JudgedAlternative>,
-    counts: impl Fn(&ScenarioRun) -> bool,
+    all: impl Iterator<Item = &'a PrintedAlternative>,
+    counts: impl Fn(&str) -> bool,
 ) -> Cell {
-    let runs = all.filter_map(|one| one.runs.as_ref().ok()).flatten().filter(|run| counts(run));
-    let metrics = runs.flat_map(|run| &run.windows).map(|(_, metrics)| metrics);
-    let settled = metrics.filter(|metrics| metrics.settling_time_s.is_ok());
-    settling_cell(settled.map(|metrics| metrics.settling_band_percent))
+    let bands = all.flat_map(|one| &one.settling_bands).filter(|(scenario, _)| counts(scenario));
+    settling_cell(bands.map(|(_, band_percent)| *band_percent))
 }
 
 /// The declared load and the load cases, each with its alternatives.
-pub(super) fn groups(found: &Alternatives) -> Vec<(&str, &[JudgedAlternative])> {
+pub(super) fn groups(found: &PrintedAlternatives) -> Vec<(&str, &[PrintedAlternative])> {
     let cases = found.cases.iter().map(|case| (case.name.as_str(), case.judged.as_slice()));
     std::iter::once((DECLARED_LOAD, found.judged.as_slice())).chain(cases).collect()
 }
 
 /// The columns for which some alternative has a value.
-fn shown<'c>(all: impl Iterator<Item = &'c AlternativeColumns> + Clone) -> Vec<(ColumnKey, &'static str)> {
-    let has = |key: ColumnKey| all.clone().any(|columns| columns.worst(key).is_some());
+fn shown<'p>(all: impl Iterator<Item = &'p PrintedAlternative> + Clone) -> Vec<(ColumnKey, &'static str)> {
+    let has = |key: ColumnKey| all.clone().any(|one| one.worst.value(key).is_some());
     COMPARED_AT_A_GLANCE.into_iter().filter(|(key, _)| has(*key)).collect()
 }
 
 /// The worst value of a column, as the table of all numbers prints it.
-fn number(columns: &AlternativeColumns, key: ColumnKey) -> Cell {
-    let (Some(value), Some(column)) = (columns.worst(key), columns.first(key)) else { return Cell::Missing };
+fn number(columns: &WorstColumns, key: ColumnKey) -> Cell {
+    let Some(column) = columns.find(key) else { return Cell::Missing };
+    let Some(value) = column.value else { return Cell::Missing };
     match column.digits {
         0 => Cell::short(value, WHOLE, DisplayUnit::ONE),
         digits => Cell::quantity(value, digits, column.unit),
@@ -95,10 +86,8 @@ fn number(columns: &AlternativeColumns, key: ColumnKey) -> Cell {
 }
 
 /// Cell that shows whether the specifications are met, or by how much they are missed.
-fn specifications(one: &JudgedAlternative) -> Cell {
-    let columns = one.columns();
-    let relaxation = columns.first(ColumnKey::Relaxation).and_then(|column| column.value.clone().ok());
-    match (one.feasible(), relaxation) {
+fn specifications(one: &PrintedAlternative) -> Cell {
+    match (one.feasible, one.worst.value(ColumnKey::Relaxation)) {
         (Some(true), _) => Cell::from("met").marked(true),
         (Some(false), Some(relaxation)) => {
             let by = Cell::quantity(relaxation, 2, DisplayUnit::DECIBEL);
@@ -107,10 +96,4 @@ fn specifications(one: &JudgedAlternative) -> Cell {
         (Some(false), None) => Cell::from("missed").marked(false),
         (None, _) => "not known".into(),
     }
-}
-
-/// Cell that shows whether the machine confirms the verdict.
-pub(super) fn machine(one: &JudgedAlternative) -> Cell {
-    let trial = one.design.as_ref().ok().and_then(|view| view.trial.as_ref());
-    trial.map(|trial| Cell::from(agreement_word(trial.agreement())).marked(trial.agreement())).into()
 }

@@ -75,6 +75,30 @@ fn reason_members(key: &ObjectKey, shape: ValueShape) -> Members {
     Members::one(key.reason(), "Reason for which the value is absent.", shape)
 }
 
+/// An object whose keys were put together before, with the description of its kind.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PutTogether<Kind> {
+    object: Object,
+    kind: PhantomData<Kind>,
+}
+
+impl<Kind: Body> PutTogether<Kind> {
+    /// The object that a value of this kind has put together.
+    pub(crate) fn new(object: Object) -> PutTogether<Kind> {
+        PutTogether { object, kind: PhantomData }
+    }
+}
+
+impl<Kind: Describe> Describe for PutTogether<Kind> {
+    fn shape() -> ValueShape {
+        Kind::shape()
+    }
+
+    fn into_json(self) -> Json {
+        Json::Object(self.object)
+    }
+}
+
 /// Values under names that follow from the project, such as those of parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Entries<Value>(pub(crate) Vec<(String, Value)>);

@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 
 use num_complex::Complex64;
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde::ser::{SerializeMap, Serializer};
+use serde::{Deserialize, Serialize};
 
 use phea_engineering::plant_names::{NamedPlant, NamedValue};
 
@@ -11,7 +12,8 @@ use crate::plant_names::ADDED;
 use crate::quantity::{MotionKind, QuantityName};
 
 /// A value of JSON. Infinity, which JSON lacks, is printed as the text `inf`, NaN as `null`.
-#[derive(Clone, Debug, PartialEq)]
+/// Between computers it has no name of a quantity, only its text.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Json {
     Null,
     Flag(bool),
@@ -19,20 +21,36 @@ pub(crate) enum Json {
     Integer(i64),
     Number(f64),
     Text(String),
-    /// Name of a quantity in a rig of the motion in which it is printed.
-    Name(QuantityName),
     List(Vec<Json>),
     Object(Object),
+    /// Name of a quantity in a rig of the motion in which it is printed.
+    // last, since serde counts the variants after a skipped one differently in both directions
+    #[serde(skip)]
+    Name(QuantityName),
+}
+
+impl Json {
+    /// With texts in place of the names of quantities, for a rig of this motion.
+    fn for_motion(self, motion: MotionKind) -> Json {
+        match self {
+            Json::Name(name) => Json::Text(name.text(motion).into_owned()),
+            Json::List(items) => Json::List(items.into_iter().map(|item| item.for_motion(motion)).collect()),
+            Json::Object(object) => Json::Object(object.for_motion(motion)),
+            other => other,
+        }
+    }
 }
 
 /// A key of an object.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum ObjectKey {
     /// Key of every rig.
     Text(String),
     /// Name of a quantity in a rig of the motion in which it is printed.
+    #[serde(skip)]
     Name(QuantityName),
     /// Reason for which that quantity has no value.
+    #[serde(skip)]
     Reason(QuantityName),
 }
 
@@ -60,7 +78,7 @@ fn reason_key(key: &str) -> String {
 }
 
 /// An object of JSON, whose keys are in the order in which they were added.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Object(Vec<(ObjectKey, Json)>);
 
 impl Object {
@@ -92,6 +110,13 @@ impl Object {
     pub(crate) fn and(mut self, other: Object) -> Object {
         self.0.extend(other.0);
         self
+    }
+
+    /// With texts in place of the names of quantities, for a rig of this motion.
+    pub(crate) fn for_motion(self, motion: MotionKind) -> Object {
+        let each = self.0.into_iter();
+        let each = each.map(|(key, json)| (key.text(motion).into_owned().into(), json.for_motion(motion)));
+        Object(each.collect())
     }
 
     /// Printed by itself, for rigs of this motion.

@@ -33,7 +33,7 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
                 worst_metric(window, plan).1
             ),
         );
-        let span = around(window, after_s(summary, index), end);
+        let span = around(window.start_s, after_s(summary, index), end);
         figures.push(picture(&words, plan, summary, span, worst_series(plan, summary, index)?));
     }
     Ok(figures)

@@ -1,15 +1,16 @@
 //! `alternatives`: one project with several sets of values, judged side by side.
 
+use phea_dynamics::watch::Progress;
 use phea_engineering::alternatives::{
-    AlternativesError, AlternativesOptions, FrontRequest, IMPEDANCE_AT, PreparedAlternative, judge, prepared,
-    prepared_cases,
+    AlternativesError, AlternativesOptions, AlternativesPlan, FrontRequest, IMPEDANCE_AT, JudgedLoad,
+    Judging, PreparedAlternative, PreparedLoad, prepared_load,
 };
 use phea_engineering::linearize::SweepRequest;
 
 use super::simulate::frequencies;
 use super::unprinted::Unprinted;
 use super::{CommandError, Watch};
-use crate::alternatives::{self, outside_words};
+use crate::alternatives::{self, PrintedAlternatives, PrintedTask, joined, outside_words};
 use crate::answer::Body;
 use crate::project::{AS_DECLARED, Loaded};
 use crate::source::Source;
@@ -30,7 +31,7 @@ pub struct AlternativesRequest {
 }
 
 impl AlternativesRequest {
-    fn read(&self) -> Result<AlternativesOptions, CommandError> {
+    pub(super) fn read(&self) -> Result<AlternativesOptions, CommandError> {
         let front = self.front.as_ref().zip(self.sweep.as_ref()).map(|(columns, range)| FrontRequest {
             columns: columns.split(',').map(|column| column.trim().to_string()).collect(),
             sweep: SweepRequest { range: range.clone(), points: self.points },
@@ -47,13 +48,59 @@ pub(super) fn alternatives_answer(
     request: &AlternativesRequest,
     watch: Watch<'_>,
 ) -> Result<Unprinted, CommandError> {
-    let found = judge(source, loaded, catalogues, &request.read()?, watch)?;
-    Ok(Unprinted {
-        document: alternatives::output(&found),
-        body: alternatives::body(&found).into_object(),
-        files: if request.files { alternatives::files(&found) } else { vec![] },
+    let found = judged(source, loaded, catalogues, &request.read()?, watch)?;
+    Ok(unprinted(&found, request.files))
+}
+
+/// Output of the command.
+pub(super) fn unprinted(found: &PrintedAlternatives, files: bool) -> Unprinted {
+    Unprinted {
+        document: alternatives::output(found),
+        body: alternatives::body(found).into_object(),
+        files: if files { alternatives::files(found) } else { vec![] },
         affirmative: found.is_complete(),
-    })
+    }
+}
+
+/// Judges the project as declared, and each of its alternatives, one after the other; then all of
+/// them under each load case, and at each value of the front. If `watch` returns `false`, the
+/// current one and all later ones are not reached.
+///
+/// # Errors
+/// [`AlternativesError`].
+pub(super) fn judged(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+    options: &AlternativesOptions,
+    watch: Watch<'_>,
+) -> Result<PrintedAlternatives, AlternativesError> {
+    let plan = AlternativesPlan::new(loaded, options)?;
+    let loads = prepared_loads(source, loaded, catalogues, &plan)?;
+    let judging = Judging::new(source, catalogues, &plan)?;
+    let motion = loaded.project.motion();
+    let (tasks, mut continues) = (plan.tasks(), true);
+    let count = tasks.len() as f64;
+    let results = tasks.into_iter().enumerate().map(|(place, task)| {
+        let mut watched = |progress: Progress| {
+            watch(Progress { fraction: (place as f64 + progress.fraction) / count, ..progress })
+        };
+        let prepared = loads.iter().find(|prepared| prepared.load == task.load()).filter(|_| continues);
+        let judged = prepared.and_then(|prepared| judging.judged(prepared, task, &mut watched));
+        continues = judged.is_some();
+        judged.map(|judged| PrintedTask::of(judged, motion))
+    });
+    Ok(joined(&plan, motion, results))
+}
+
+/// The alternatives under every load of a plan.
+pub(super) fn prepared_loads(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+    plan: &AlternativesPlan,
+) -> Result<Vec<PreparedLoad>, AlternativesError> {
+    plan.loads().map(|load| prepared_load(source, loaded, catalogues, load)).collect()
 }
 
 /// Reads every alternative and assembles its rig, so that an invalid one is found before anything
@@ -66,9 +113,11 @@ pub(super) fn read_alternatives(
     if loaded.project.alternatives.is_empty() {
         return Ok(vec![]);
     }
-    let mut warnings = rigs(&prepared(source, loaded, catalogues)?.0, "")?;
-    for case in prepared_cases(source, loaded, catalogues)? {
-        let further = rigs(&case.all, &format!(", {}", case.name))?;
+    let declared = prepared_load(source, loaded, catalogues, JudgedLoad::Declared)?;
+    let mut warnings = rigs(&declared.all, "")?;
+    for (index, case) in loaded.project.load_cases.iter().enumerate() {
+        let there = prepared_load(source, loaded, catalogues, JudgedLoad::Case(index))?;
+        let further = rigs(&there.all, &format!(", {}", case.name))?;
         warnings
             .extend(further.into_iter().filter(|sentence| !warnings.contains(sentence)).collect::<Vec<_>>());
     }

@@ -4,13 +4,14 @@ use std::borrow::Cow;
 
 use phea_engineering::trial::Agreement;
 use phea_qft::verification::Verdict;
+use serde::{Deserialize, Serialize};
 
 use super::number::{CellNumber, Digits, NumberUnit};
 use crate::quantity::{Dimension, DisplayUnit};
 
 /// A verdict as a form and a colour next to its word, so that no reader depends on a single one of
 /// them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum StatusMark {
     /// A circle with a tick.
     Good,

@@ -1,16 +1,14 @@
 //! The chapter on the alternatives of the project: one table, the findings, and their curves laid
 //! over each other.
 
-use phea_engineering::alternatives::Alternatives;
-
 use super::chapter::Chapter;
-use crate::alternatives::{document, figures, first_warnings};
+use crate::alternatives::{PrintedAlternatives, document, figures, first_warnings};
 use crate::document::Document;
 use crate::project::Project;
 
 /// The chapter; `None` for a project without alternatives. If they were not judged, the chapter
 /// states how to request this.
-pub(super) fn chapter(project: &Project, found: Option<&Alternatives>) -> Option<Chapter> {
+pub(super) fn chapter(project: &Project, found: Option<&PrintedAlternatives>) -> Option<Chapter> {
     let names: Vec<&str> = project.alternatives.iter().map(|one| one.name.as_str()).collect();
     let document = match (found, names.as_slice()) {
         (None, []) => return None,

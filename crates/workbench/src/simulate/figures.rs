@@ -4,6 +4,7 @@ use phea_engineering::simulate::{Cause, Metrics, Record, ScenarioComparison, Sce
 
 use super::cause_words;
 use super::compared::compared_titles;
+use super::laid_over::{OverlaidRun, laid_over};
 use super::span::{span_of, span_of_events};
 use crate::answer::{OutputFile, picture_files, significant};
 use crate::document::capital;
@@ -304,28 +305,36 @@ fn drawn(run: &ScenarioRun, panels: Vec<CurvePanel>, span_s: [f64; 2]) -> CurveC
 
 /// The events that have their own figure, with their indices among all.
 pub(super) fn enlarged(windows: &[(Window, Metrics)], end_s: f64) -> Vec<(usize, &Window)> {
-    let begun = windows.iter().map(|(window, _)| window).enumerate();
-    let begun: Vec<(usize, &Window)> = begun.filter(|(_, window)| window.start_s < end_s).collect();
-    if begun.len() <= ENLARGED {
-        return begun;
+    let events: Vec<(f64, Option<f64>)> =
+        windows.iter().map(|(window, _)| (window.start_s, step_height(window))).collect();
+    let places = enlarged_places(&events, end_s).into_iter();
+    places.filter_map(|place| Some((place, &windows.get(place)?.0))).collect()
+}
+
+/// Height of the step with which an event begins.
+pub(super) fn step_height(window: &Window) -> Option<f64> {
+    match window.cause {
+        Cause::ReferenceStep { from_n, to_n } => Some((to_n - from_n).abs()),
+        Cause::CommandStep { from_v, to_v } => Some((to_v - from_v).abs()),
+        _ => None,
     }
-    let height = |window: &Window| match window.cause {
-        Cause::ReferenceStep { from_n, to_n } => (to_n - from_n).abs(),
-        Cause::CommandStep { from_v, to_v } => (to_v - from_v).abs(),
-        _ => 0.0,
-    };
-    let greatest = begun.iter().map(|(_, window)| height(window)).fold(0.0, f64::max);
-    let first = begun.iter().position(|(_, window)| height(window) == greatest);
-    let chosen = |place: usize, window: &Window| {
-        !matches!(window.cause, Cause::ReferenceStep { .. } | Cause::CommandStep { .. })
-            || Some(place) == first
-    };
-    begun
-        .iter()
-        .enumerate()
-        .filter(|(place, (_, window))| chosen(*place, window))
-        .map(|(_, one)| *one)
-        .collect()
+}
+
+/// Places of the events that have their own figure; each event has its start and the height of its
+/// step.
+pub(super) fn enlarged_places(events: &[(f64, Option<f64>)], end_s: f64) -> Vec<usize> {
+    let begun = events.iter().enumerate().filter(|(_, (start_s, _))| *start_s < end_s);
+    let begun: Vec<(usize, Option<f64>)> = begun.map(|(place, (_, step))| (place, *step)).collect();
+    let all = begun.iter().map(|(place, _)| *place);
+    if begun.len() <= ENLARGED {
+        return all.collect();
+    }
+    let heights = || begun.iter().map(|(_, step)| step.unwrap_or_default());
+    let greatest = heights().fold(0.0, f64::max);
+    let first = heights().position(|height| height == greatest);
+    let chosen =
+        begun.iter().enumerate().filter(|(index, (_, step))| step.is_none() || Some(*index) == first);
+    chosen.map(|(_, (place, _))| *place).collect()
 }
 
 /// The events of windows that are within the frame.
@@ -409,57 +418,11 @@ fn compared(comparison: &ScenarioComparison<'_>, name: &str, number: usize) -> V
     let titles = compared_titles(&projects).into_iter();
     let (titles, runs): (Vec<String>, Vec<&ScenarioRun>) =
         titles.zip(comparison.runs_of(name)).filter_map(|(title, run)| Some((title, run?))).unzip();
-    let force = capital(units_of(&runs).motion.words().force);
+    let motion = runs.first().map(|run| run.record.units.motion).unwrap_or_default();
+    let force = capital(motion.words().force);
     let caption = format!("{force}, command and load pressure of each project.");
-    laid_over((&format!("compare-{number}"), name, &caption), &titles, &runs)
-}
-
-/// Figures of one scenario for several rigs: the whole, and each event of the first rig enlarged.
-pub(crate) fn laid_over(
-    (file, title, caption): (&str, &str, &str),
-    titles: &[String],
-    runs: &[&ScenarioRun],
-) -> Vec<Figure> {
-    let ends = runs.iter().filter_map(|run| run.record.times_s.last().copied());
-    let end = ends.fold(0.0, f64::max);
-    let words = |suffix: String, title: String| Words::new(format!("{file}{suffix}"), title, caption);
-    let mut figures = vec![side_by_side(&words(String::new(), title.to_string()), titles, runs, [0.0, end])];
-    let units = units_of(runs);
-    let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
-    for (index, window) in enlarged(windows, end) {
-        let words =
-            words(format!("-event-{}", index + 1), format!("Enlarged: {}", cause_words(window, units)));
-        figures.push(side_by_side(
-            &words,
-            titles,
-            runs,
-            runs.first().map_or([0.0, end], |run| span_of(run, window, end)),
-        ));
-    }
-    figures
-}
-
-fn side_by_side(words: &Words, titles: &[String], runs: &[&ScenarioRun], span_s: [f64; 2]) -> Figure {
-    let each = |values: fn(&Record) -> Vec<f64>| -> Vec<Trace> {
-        runs.iter().map(|run| over_time(&run.record, values(&run.record))).collect()
-    };
-    let reference = runs.iter().find_map(|run| reference_trace(&run.record));
-    let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
-    let units = units_of(runs);
-    let unit = units.force;
-    let forces =
-        panel(&measured_force(units.motion), unit, 230.0, each(|record| record.signal(Signal::Force)));
-    let panels = vec![
-        with_lines_beneath(forces, unit, CurveStyle::Reference, reference),
-        panel("Command U_C", DisplayUnit::VOLT, 130.0, each(|record| record.signal(Signal::Control))),
-        panel("p_A - p_B", units.pressure, 130.0, each(load_pressure)),
-    ];
-    chart(panels, titles.to_vec(), &instants(windows, span_s, units.motion), span_s).draw(words)
-}
-
-/// The units in which several runs are drawn: those of the first.
-fn units_of(runs: &[&ScenarioRun]) -> Units {
-    runs.first().map_or(Units::default(), |run| run.record.units)
+    let runs: Vec<OverlaidRun> = runs.into_iter().map(OverlaidRun::of).collect();
+    laid_over((&format!("compare-{number}"), name, &caption), &titles, &runs.iter().collect::<Vec<_>>())
 }
 
 /// The difference of the pressures of both chambers.

@@ -17,19 +17,23 @@ const CYCLES: f64 = 2.0;
 
 /// The time that the figure of an event shows, within the run.
 pub(crate) fn span_of(run: &ScenarioRun, window: &Window, end_s: f64) -> [f64; 2] {
+    around(window.start_s, shown_after(run, window), end_s)
+}
+
+/// Time shown after the start of an event, s.
+pub(super) fn shown_after(run: &ScenarioRun, window: &Window) -> f64 {
     let metrics = run.windows.iter().find(|(own, _)| own == window).map(|(_, metrics)| metrics);
-    let after_s = match window.cause {
+    match window.cause {
         Cause::ReferenceMotion { .. } => moving(&run.record, &run.record.reference_n, window),
         Cause::CommandMotion { .. } => moving(&run.record, &run.record.signal(Signal::Control), window),
         _ => settled(metrics),
-    };
-    around(window, after_s, end_s)
+    }
 }
 
 /// The time around the start of an event, this long after it.
-pub(crate) fn around(window: &Window, after_s: f64, end_s: f64) -> [f64; 2] {
+pub(crate) fn around(start_s: f64, after_s: f64, end_s: f64) -> [f64; 2] {
     let after_s = after_s.max(SHORTEST_S);
-    [(window.start_s - BEFORE * after_s).max(0.0), (window.start_s + after_s).min(end_s)]
+    [(start_s - BEFORE * after_s).max(0.0), (start_s + after_s).min(end_s)]
 }
 
 /// Three settling times; a fixed time if the force does not settle.

@@ -1,9 +1,9 @@
 //! Fronts of alternatives over a swept key, for programs.
 
-use phea_engineering::alternatives::{ColumnKey, ColumnSense, Front, FrontPoint, FrontValue};
+use phea_engineering::alternatives::{ColumnKey, ColumnSense};
 
 use super::super::front::findings;
-use super::super::words::{no_front_value_words, unknown_words};
+use super::super::printed::{PrintedFront, PrintedPoint, PrintedValue};
 use super::columns::{
     ImpedanceColumnsAnswer, LoopColumnsAnswer, RigColumnsAnswer, ScenarioColumnsAnswer,
     SpecificationColumnsAnswer,
@@ -85,7 +85,7 @@ impl KeyList for FrontColumnKeys {
 }
 
 /// Value of a column, printed without a decimal point if it is whole by its kind.
-struct FrontNumber(FrontValue);
+struct FrontNumber(PrintedValue);
 
 impl Describe for FrontNumber {
     fn shape() -> ValueShape {
@@ -94,13 +94,13 @@ impl Describe for FrontNumber {
 
     fn into_json(self) -> Json {
         match self.0 {
-            FrontValue { value, digits: 0, .. } => Json::Integer(value as i64),
-            FrontValue { value, .. } => Json::Number(value),
+            PrintedValue { value, digits: 0, .. } => Json::Integer(value as i64),
+            PrintedValue { value, .. } => Json::Number(value),
         }
     }
 }
 
-pub(super) fn front(front: &Front) -> FrontAnswer {
+pub(super) fn front(front: &PrintedFront) -> FrontAnswer {
     let columns = front.columns.iter();
     FrontAnswer {
         key: front.path.clone(),
@@ -108,25 +108,23 @@ pub(super) fn front(front: &Front) -> FrontAnswer {
         columns: columns
             .map(|column| FrontColumnAnswer { key: column.key.quantity(), better: column.sense })
             .collect(),
-        points: front.points.iter().map(|one| point(front, one)).collect(),
+        points: front.placed().map(|(one, dominating)| point(front, one, dominating)).collect(),
         not_reached: front.not_reached,
         findings: findings(front),
     }
 }
 
-fn point(front: &Front, point: &FrontPoint) -> FrontPointAnswer {
-    let feasible = point.feasible.as_ref().copied();
+fn point(front: &PrintedFront, point: &PrintedPoint, dominating: &[usize]) -> FrontPointAnswer {
     let values = front.columns.iter().zip(&point.values).map(|(column, value)| {
-        let value = value.as_ref().copied().map(FrontNumber).map_err(no_front_value_words);
-        (ObjectKey::from(column.key.quantity()), OrReason(value))
+        (ObjectKey::from(column.key.quantity()), OrReason(value.clone().map(FrontNumber)))
     });
     FrontPointAnswer {
         alternative: point.alternative.clone(),
         value: point.value,
-        feasible: OrReason(feasible.map_err(|why| unknown_words(why, front.motion))),
+        feasible: OrReason(point.feasible.clone()),
         comparable: point.comparable,
         values: Keyed::new(values),
-        on_front: point.is_on_front(),
-        dominated_by: point.dominated_by.clone(),
+        on_front: point.is_on_front(dominating),
+        dominated_by: dominating.to_vec(),
     }
 }
