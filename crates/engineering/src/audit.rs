@@ -42,7 +42,7 @@ use crate::setup::Setup;
 use crate::side_by_side::{all_cores, both};
 use crate::source::Source;
 use crate::specification::{NamedSpecification, SpecificationName};
-use phea_dynamics::watch::{Stopped, Watch, part, unwatched};
+use phea_dynamics::watch::{Stopped, Watch, part};
 
 /// Reason why there is nothing to audit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -108,11 +108,11 @@ pub fn problem_to_audit(source: &dyn Source, setup: &Setup<'_>) -> Result<Robust
 /// # Errors
 /// [`Stopped`] if `watch` cancels it.
 pub fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result<ProjectAudit, Stopped> {
-    let fraction = if problem.rig_outside.is_some() { 0.8 } else { 1.0 };
+    let fraction = if problem.rig_outside.is_some() { 0.8 } else { 0.9 };
     let requested = audit_request(problem, &problem.family);
-    let audit = audit_by(&requested, all_cores(), &mut part(watch, STAGE, [0.0, fraction]))?;
-    let of_rig = caveat_of_rig(problem, &mut part(watch, STAGE, [fraction, 1.0]))?;
-    Ok(ProjectAudit::new(problem, audit, of_rig))
+    let audit = audit_by(&requested, all_cores(), &mut part(&mut *watch, STAGE, [0.0, fraction]))?;
+    let of_rig = caveat_of_rig(problem, &mut part(&mut *watch, STAGE, [fraction, 0.95]))?;
+    ProjectAudit::new(problem, audit, of_rig, &mut part(watch, STAGE, [0.95, 1.0]))
 }
 
 /// Audits a problem, possibly over another family.
@@ -260,7 +260,15 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
 impl ProjectAudit {
     /// An audit of the loop of this problem, with the findings for the rig itself if the family
     /// does not contain it.
-    pub(crate) fn new(problem: &RobustProblem, mut audit: Audit, of_rig: Option<Caveat>) -> ProjectAudit {
+    ///
+    /// # Errors
+    /// [`Stopped`] if `watch` cancels the search of the worst steps.
+    pub(crate) fn new(
+        problem: &RobustProblem,
+        mut audit: Audit,
+        of_rig: Option<Caveat>,
+        watch: Watch<'_>,
+    ) -> Result<ProjectAudit, Stopped> {
         let RobustProblem { family, compensation, .. } = problem;
         let delayed_paths = DelayedPaths::of(problem);
         if delayed_paths.are_some() {
@@ -271,11 +279,12 @@ impl ProjectAudit {
             audit.verdict = audit.verdict.max(Verdict::NotProven);
         }
         let (in_time, margins) = both(
-            &mut unwatched,
+            watch,
             0.5,
-            |_| in_time::findings(problem, &audit),
+            |watch| in_time::findings(problem, &audit, watch),
             |_| AuditMargins::of(problem, &audit),
         );
+        let in_time = in_time?;
         let noise = |signal| SignalNoise::of(signal, problem, audit.stability.verdict);
         let [velocity_noise, pressure_noise] = [NoisySignal::LoadVelocity, NoisySignal::Pressures].map(noise);
         let nominal = margins.nominal.as_ref().and_then(|set| {
@@ -284,7 +293,7 @@ impl ProjectAudit {
                 if delayed_paths.are_some() { set.delay_s.value } else { own.delay_margin_s };
             Some(NominalMargins { delay_margin_s, ..own })
         });
-        ProjectAudit {
+        Ok(ProjectAudit {
             nominal,
             margins,
             reached: audit.specifications.iter().map(|finding| reached(problem, finding)).collect(),
@@ -311,7 +320,7 @@ impl ProjectAudit {
             amplifying_prefilter: PrefilterGain::amplifying(compensation),
             proof: None,
             below_design: None,
-        }
+        })
     }
 
     /// Verdict on the specifications over frequency and on the requirements in time: a step that

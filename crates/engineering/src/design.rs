@@ -66,7 +66,7 @@ use crate::setup::{ProjectInputs, Setup, is_of_position};
 use crate::side_by_side::{all_cores, both};
 use crate::source::Source;
 use crate::trial::{Agreement, DrivenCorners, Trial, simulated_trial};
-use phea_dynamics::watch::{Stopped, Watch, part, within};
+use phea_dynamics::watch::{Stopped, Watch, part, unwatched, within};
 
 /// Name of the file with the designed project.
 pub const DESIGNED_PROJECT: &str = "designed.toml";
@@ -160,7 +160,8 @@ impl ProjectDesign {
             ..own
         };
         let of_rig = caveat_of_rig(&problem, watch).unwrap_or_else(|Stopped| unexamined_rig(&problem));
-        let view = ProjectAudit::new(&problem, audit, of_rig);
+        // the best result so far of a design that was cancelled is examined in time as well
+        let view = ProjectAudit::new(&problem, audit, of_rig, &mut unwatched)?;
         let rounding = rounding::rounding(setup, &problem)?;
         let manual = ManualLaw::new(&law.feedback, design.name);
         let declared = project.controller.clone().unwrap_or_default();
@@ -222,7 +223,7 @@ impl ProjectDesign {
         self.design.audit = audit.clone();
         let (problem, audit, limit_findings) = split(&problem, &audit);
         let of_rig = caveat_of_rig(&problem, watch)?;
-        let mut view = ProjectAudit::new(&problem, audit, of_rig);
+        let mut view = ProjectAudit::new(&problem, audit, of_rig, &mut *watch)?;
         // the proof of a design led by its steps is made at the end
         if !problem.in_time.iter().any(|one| one.follows) {
             prove_claims(&problem, &mut view, watch)?;

@@ -4,11 +4,13 @@
 
 use phea_dynamics::portable;
 use phea_dynamics::time_response::{StepBaseline, StepMetrics, TimeResponseError, step_metrics};
+use phea_dynamics::watch::{Progress, Stopped, Watch};
 use phea_qft::closed_loop::Member;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::{Audit, PlantPoint, Verdict};
 
+use super::STAGE;
 use super::margins::{corners, spread, worst_plants};
 use crate::linear_step::{KnownResponses, StepResponse, StepSignal, linear_step_knowing};
 use crate::robust::RobustProblem;
@@ -153,10 +155,18 @@ impl TimeFinding {
 }
 
 /// Findings for every requirement in time of a problem, after its audit.
-pub(super) fn findings(problem: &RobustProblem, audit: &Audit) -> Vec<TimeFinding> {
-    let of = |requirement: &TimeRequirement| TimeFinding {
-        requirement: *requirement,
-        outcome: outcome(problem, audit, requirement).unwrap_or_else(TimeOutcome::NotExamined),
+///
+/// # Errors
+/// [`Stopped`] if `watch` cancels them.
+pub(super) fn findings(
+    problem: &RobustProblem,
+    audit: &Audit,
+    watch: Watch<'_>,
+) -> Result<Vec<TimeFinding>, Stopped> {
+    let of = |requirement: &TimeRequirement| {
+        let outcome = outcome(problem, audit, requirement, &mut *watch)?;
+        let outcome = outcome.unwrap_or_else(TimeOutcome::NotExamined);
+        Ok(TimeFinding { requirement: *requirement, outcome })
     };
     problem.in_time.iter().map(of).collect()
 }
@@ -165,23 +175,32 @@ fn outcome(
     problem: &RobustProblem,
     audit: &Audit,
     requirement: &TimeRequirement,
-) -> Result<TimeOutcome, Unexamined> {
-    let Family::Uncertain(family) = &problem.family else { return Err(Unexamined::Measured) };
+    watch: Watch<'_>,
+) -> Result<Result<TimeOutcome, Unexamined>, Stopped> {
+    let Family::Uncertain(family) = &problem.family else { return Ok(Err(Unexamined::Measured)) };
     if requirement.limits.is_some() && !problem.has_prefilter {
-        return Err(Unexamined::NoPrefilter);
+        return Ok(Err(Unexamined::NoPrefilter));
     }
     if audit.stability.verdict != Verdict::Met {
-        return Err(Unexamined::NotStable);
+        return Ok(Err(Unexamined::NotStable));
     }
     let mut search = StepSearch { problem, family, step_limits: requirement.step_limits, visited: vec![] };
-    for values in visited(family, audit) {
-        search.visit(&values).map_err(Unexamined::Step)?;
+    let plants = visited(family, audit);
+    for (index, values) in plants.iter().enumerate() {
+        if !watch(Progress { stage: STAGE, fraction: index as f64 / plants.len() as f64 }) {
+            return Err(Stopped);
+        }
+        if let Err(error) = search.visit(values) {
+            return Ok(Err(Unexamined::Step(error)));
+        }
     }
-    if family.extent() == Extent::Box && family.plant().is_rational() {
-        search.between().map_err(Unexamined::Step)?;
-    }
+    let between = match family.extent() == Extent::Box && family.plant().is_rational() {
+        true => search.between(),
+        false => Ok(()),
+    };
     let [overshoot, settling, rise] = [0, 1, 2].map(|property| search.worst(property));
-    Ok(TimeOutcome::Searched { plants: search.visited.len(), overshoot, settling, rise })
+    let found = TimeOutcome::Searched { plants: search.visited.len(), overshoot, settling, rise };
+    Ok(between.map(|()| found).map_err(Unexamined::Step))
 }
 
 /// Worst steps of the nominal plant and of members spread over the family, without an audit; `None`

@@ -146,7 +146,7 @@ fn document(answer: &ExportAnswer, contract: &Contract) -> Document {
     let milliseconds = |time_s| DisplayUnit::MILLISECOND.text(time_s, 4);
     let acts = match answer.delay_s == 0.0 {
         true => "without delay".to_string(),
-        false => format!("at most {} later", milliseconds(answer.delay_s)),
+        false => format!("{} after its sample", milliseconds(answer.delay_s)),
     };
     document.line(format!(
         "{} runs every {}, and the verdict assumes that its command acts {acts}; {} test vectors",

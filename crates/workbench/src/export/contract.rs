@@ -40,7 +40,10 @@ impl Contract {
         lines.extend([String::new(), format!("Verdict: {}", self.verdict), String::new()]);
         let acts = match self.delay_s == 0.0 {
             true => "The verdict assumes that the command acts at its sample, without delay.".to_string(),
-            false => format!("The command must act at most {} s after its sample.", self.delay_s),
+            false => format!(
+                "The verdict holds for a command that acts {} s after its sample, neither later nor earlier.",
+                self.delay_s
+            ),
         };
         lines.push(format!("Sample time: {} s. {acts}", deployed.controller.sample_time_s()));
         lines.push(String::new());

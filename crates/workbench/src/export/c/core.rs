@@ -5,7 +5,7 @@ use std::fmt::Write;
 use phea_dynamics::controller::{AntiWindup, Converter, Section};
 use phea_machine::Deployed;
 
-use super::number::{braces, constant};
+use super::number::{ARITHMETIC, braces, constant};
 use crate::export::DeployedSignal;
 
 /// Names of the series of sections, with their sections; one without sections is left out.
@@ -88,18 +88,6 @@ int {name}_self_test(unsigned long long *units);
 "
     )
 }
-
-/// The arithmetic: each operation rounds once, whatever the compiler would fuse.
-const ARITHMETIC: &str = "#if defined(__FAST_MATH__)
-#error \"compile without -ffast-math: its results are not those that were verified\"
-#endif
-#include <float.h>
-/* 0 and 1: doubles as they are; 16 to 64: likewise, with shorter types beside them */
-#if (FLT_EVAL_METHOD < 0) || (FLT_EVAL_METHOD == 2) || (FLT_EVAL_METHOD > 64)
-#error \"this compiler computes with more digits than a double has: its results are not those that were verified\"
-#endif
-
-";
 
 const CLAMPED: &str = "
 /* Value within a limit of its magnitude. */

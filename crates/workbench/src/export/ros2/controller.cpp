@@ -78,11 +78,11 @@ CallbackReturn Controller::on_configure(const rclcpp_lifecycle::State &)
       return CallbackReturn::FAILURE;
     }
   }
-  reference_.writeFromNonRT(NO_NUMBER);
+  reference_.writeFromNonRT({});
   subscription_ = get_node()->create_subscription<std_msgs::msg::Float64>(
     parameter("reference_topic"), rclcpp::SystemDefaultsQoS(),
     [this](const std_msgs::msg::Float64::SharedPtr message) {
-      reference_.writeFromNonRT(message->data);
+      reference_.writeFromNonRT({true, message->data});
     });
   // the loop itself must not log
   timer_ = get_node()->create_wall_timer(std::chrono::seconds(1), [this]() {tell_invalid();});
@@ -115,7 +115,7 @@ CallbackReturn Controller::on_activate(const rclcpp_lifecycle::State &)
     RCLCPP_ERROR(get_node()->get_logger(), "the measurement is not a finite number");
     return CallbackReturn::ERROR;
   }
-  reference_.writeFromNonRT(NO_NUMBER);
+  reference_.writeFromNonRT({});
   const double present = value_of(command_interfaces_[0], 0);
   @NAME@_reset(&state_);
   const @NAME@_signals signals = read(held_reference_);
@@ -139,8 +139,8 @@ CallbackReturn Controller::on_deactivate(const rclcpp_lifecycle::State &)
 controller_interface::return_type Controller::update(
   const rclcpp::Time &, const rclcpp::Duration &)
 {
-  const double asked = *reference_.readFromRT();
-  const @NAME@_signals signals = read(std::isnan(asked) ? held_reference_ : asked);
+  const Reference asked = *reference_.readFromRT();
+  const @NAME@_signals signals = read(asked.is_received ? asked.value : held_reference_);
   const @NAME@_output output = @NAME@_step(&state_, &signals);
   if (output.invalid != 0) {
     invalid_.fetch_add(1, std::memory_order_relaxed);

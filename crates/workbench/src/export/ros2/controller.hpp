@@ -39,6 +39,13 @@ private:
   static constexpr std::size_t COUNT = @COUNT@;
   static constexpr std::array<const char *, COUNT> SIGNALS = {{@SIGNALS@}};
 
+  /// Last message since the activation, if there is one.
+  struct Reference
+  {
+    bool is_received = false;
+    double value = 0.0;
+  };
+
   std::string parameter(const std::string & name) const;
   @NAME@_signals read(double reference) const;
   void tell_invalid();
@@ -47,7 +54,7 @@ private:
   @NAME@_state state_{};
   /// Reference until the first message after the activation: the measured value at that time.
   double held_reference_ = 0.0;
-  realtime_tools::RealtimeBuffer<double> reference_;
+  realtime_tools::RealtimeBuffer<Reference> reference_;
   std::atomic<unsigned long long> invalid_{0};
   unsigned long long told_ = 0;
   rclcpp::Subscription<std_msgs::msg::Float64>::SharedPtr subscription_;
