@@ -37,7 +37,8 @@ pub struct MarginSet {
     pub gain_db: LoopMargin,
     /// Factor to which the gain may fall, dB; minus infinity if it may vanish.
     pub gain_reduction_db: LoopMargin,
-    /// Least angle between L and -1 at |L| = 1, lag or lead, degrees.
+    /// Least angle between L and -1 at |L| = 1, degrees: lag (if positive) or lead (if negative)
+    /// that brings L to -1.
     pub phase_deg: LoopMargin,
     /// Least |1 + L|.
     pub modulus: LoopMargin,
@@ -69,11 +70,14 @@ impl MarginSet {
     /// Each margin of the plant for which it is worse.
     fn worst_of(self, other: MarginSet) -> MarginSet {
         let least = |one: LoopMargin, other: LoopMargin| if other.value < one.value { other } else { one };
+        let nearest = |one: LoopMargin, other: LoopMargin| {
+            if other.value.abs() < one.value.abs() { other } else { one }
+        };
         let greatest = |one: LoopMargin, other: LoopMargin| if other.value > one.value { other } else { one };
         MarginSet {
             gain_db: least(self.gain_db, other.gain_db),
             gain_reduction_db: greatest(self.gain_reduction_db, other.gain_reduction_db),
-            phase_deg: least(self.phase_deg, other.phase_deg),
+            phase_deg: nearest(self.phase_deg, other.phase_deg),
             modulus: least(self.modulus, other.modulus),
             delay_s: least(self.delay_s, other.delay_s),
         }
@@ -98,7 +102,7 @@ impl MarginSet {
         MarginSet {
             gain_db: gain(found.gain_increase(), f64::INFINITY),
             gain_reduction_db: gain(found.gain_decrease(), f64::NEG_INFINITY),
-            phase_deg: crossing(found.critical_phase(), |margin| margin.phase_deg.abs()),
+            phase_deg: crossing(found.critical_phase(), |margin| margin.phase_deg),
             modulus: LoopMargin {
                 value: found.modulus_margin.distance,
                 frequency_rad_per_s: Some(found.modulus_margin.frequency_rad_per_s),
