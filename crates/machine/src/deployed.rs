@@ -97,8 +97,10 @@ impl Deployed {
         DeployedState { controller: self.controller.at_rest(), command_v: 0.0 }
     }
 
-    /// Replaces the state by one that holds this command while the signals do not change; it is
-    /// unchanged if a signal or the command is not a finite number.
+    /// Replaces the state by one at which these signals give this command, which is neither limited
+    /// nor rounded: an integral part moves on with the error, and a controller without one gives
+    /// its response to the error instead. The state is unchanged if a signal or the command is not
+    /// a finite number.
     ///
     /// # Example
     /// ```

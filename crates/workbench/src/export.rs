@@ -24,6 +24,9 @@ pub use name::identifier;
 pub use signal::DeployedSignal;
 pub use vectors::{TestVector, VectorOperation, test_vectors};
 
+/// Longest line of the head of a file.
+const WIDTH: usize = 96;
+
 /// A controller with everything that its files state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExportedController {
@@ -56,12 +59,12 @@ impl ExportedController {
         DeployedSignal::of(&self.deployed)
     }
 
-    /// Lines of the head of a file, none longer than this.
-    pub(crate) fn head(&self, width: usize) -> Vec<String> {
+    /// Lines of the head of a file.
+    pub(crate) fn head(&self) -> Vec<String> {
         let lines = self.contract.lines(&self.deployed);
         let wrapped = |line: &String| {
             let indent = if line.starts_with("- ") { "  " } else { "" };
-            let options = textwrap::Options::new(width).subsequent_indent(indent);
+            let options = textwrap::Options::new(WIDTH).subsequent_indent(indent);
             textwrap::wrap(line, options).into_iter().map(String::from).collect::<Vec<_>>()
         };
         lines.iter().flat_map(wrapped).collect()

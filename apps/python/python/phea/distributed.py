@@ -43,7 +43,7 @@ __all__ = ["WorkerMismatch", "alternatives", "campaign", "identity", "sweep"]
 # Commands of a sweep: the methods of a project that return an answer.
 _COMMANDS = (
     *("check", "size", "linearize", "verify", "design", "simulate", "campaign", "campaign_run"),
-    *("alternatives", "bench", "report"),
+    *("alternatives", "bench", "export", "report"),
 )
 # Runs of a chunk: some seconds of work, so that the engine's overhead is small.
 _CHUNK = 1000

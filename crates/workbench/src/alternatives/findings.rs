@@ -115,8 +115,9 @@ fn order_words(judged: &[PrintedAlternative]) -> String {
     }
 }
 
-/// What the verdicts do not include, each sentence once, after the names of all alternatives to
-/// which it applies; if it applies to most of them, after the names of the exceptions.
+/// Effects that the verdicts do not include, each sentence once, after the names of all
+/// alternatives to which it applies; if it applies to most of them, after the names of the
+/// exceptions.
 fn lacking(judged: &[PrintedAlternative]) -> Vec<String> {
     let sentences = judged.iter().flat_map(|one| {
         let lacking = one.sentences.lacking.iter();

@@ -16,13 +16,10 @@ pub(super) const ENDINGS: [&str; 3] = [".h", ".c", "_self_test.c"];
 /// Name of the example.
 pub(super) const EXAMPLE: &str = "example_main.c";
 
-/// Longest line of a comment.
-const WIDTH: usize = 96;
-
 /// The header, the source, its self test and an example of its use.
 pub fn files(exported: &ExportedController) -> Vec<OutputFile> {
     let ExportedController { name, deployed, vectors, .. } = exported;
-    let head = comment(&exported.head(WIDTH));
+    let head = comment(&exported.head());
     let [header, source, self_test] = ENDINGS.map(|ending| format!("{name}{ending}"));
     let file = |name: String, text: String| OutputFile::new(name, format!("{head}\n{text}"));
     vec![

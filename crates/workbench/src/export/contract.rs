@@ -1,4 +1,4 @@
-//! What every exported file says of itself.
+//! Facts that every exported file states about itself.
 
 use phea_dynamics::controller::Converter;
 use phea_machine::Deployed;
@@ -23,7 +23,7 @@ pub struct Contract {
     pub delay_s: f64,
     /// Motion of the rig; `None` for a plant without units.
     pub motion: Option<MotionKind>,
-    /// What the verdict does not cover, in sentences.
+    /// Effects that the verdict does not cover, in sentences.
     pub not_covered: Vec<String>,
 }
 

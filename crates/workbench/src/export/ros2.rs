@@ -24,9 +24,6 @@ enum Comment {
     None,
 }
 
-/// Longest line of a comment.
-const WIDTH: usize = 96;
-
 /// Names of the files.
 pub(super) fn file_names(name: &str) -> Vec<String> {
     TEMPLATES.iter().map(|(ending, ..)| file_name(name, ending)).collect()
@@ -64,7 +61,7 @@ pub fn files(exported: &ExportedController) -> Vec<OutputFile> {
     c::files(exported).into_iter().chain(own).collect()
 }
 
-/// What takes the place of the words in a template.
+/// Texts that replace the words between `@` in a template.
 struct Texts {
     head: Vec<String>,
     words: [(&'static str, String); 10],
@@ -72,7 +69,7 @@ struct Texts {
 
 impl Texts {
     fn new(exported: &ExportedController, rate: u32) -> Texts {
-        let head = exported.head(WIDTH);
+        let head = exported.head();
         let signals: Vec<&str> = exported
             .signals()
             .into_iter()

@@ -5,15 +5,12 @@ mod python;
 
 use phea_dynamics::controller::{AntiWindup, Section};
 
-use super::{ExportedController, ExportedPlant};
+use super::ExportedController;
 use crate::answer::OutputFile;
-
-/// Longest line of a comment.
-const WIDTH: usize = 96;
 
 /// The module for Python.
 pub fn python(exported: &ExportedController) -> Vec<OutputFile> {
-    let head = exported.head(WIDTH).join("\n").replace('\\', "/").replace("\"\"\"", "'''");
+    let head = exported.head().join("\n").replace('\\', "/").replace("\"\"\"", "'''");
     let text = format!("\"\"\"{head}\n\"\"\"\n\n{}", python::module(exported));
     vec![OutputFile::new(format!("{}.py", exported.name), text)]
 }
@@ -21,7 +18,7 @@ pub fn python(exported: &ExportedController) -> Vec<OutputFile> {
 /// The script for MATLAB and Octave.
 pub fn matlab(exported: &ExportedController) -> Vec<OutputFile> {
     let head: String =
-        exported.head(WIDTH).iter().map(|line| format!("{}\n", format!("% {line}").trim_end())).collect();
+        exported.head().iter().map(|line| format!("{}\n", format!("% {line}").trim_end())).collect();
     let text = format!("{head}\n{}", matlab::script(exported));
     vec![OutputFile::new(format!("{}.m", exported.name), text)]
 }
@@ -58,9 +55,4 @@ fn number(value: f64) -> String {
 
 fn numbers(values: impl IntoIterator<Item = f64>) -> String {
     values.into_iter().map(number).collect::<Vec<_>>().join(", ")
-}
-
-/// Plants, in the order of the family.
-fn plants(exported: &ExportedController) -> &[ExportedPlant] {
-    &exported.plants
 }

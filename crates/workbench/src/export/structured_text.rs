@@ -17,9 +17,6 @@ pub(super) const PORTABLE: &str = ".st";
 /// Endings of the files of TwinCAT.
 pub(super) const OF_TWINCAT: [&str; 2] = [".TcPOU", "_Test.TcPOU"];
 
-/// Longest line of a comment.
-const WIDTH: usize = 96;
-
 /// A function block: its declaration and its statements.
 struct FunctionBlock {
     name: String,
@@ -29,7 +26,7 @@ struct FunctionBlock {
 
 /// The controller and its test as text, and each as a file of TwinCAT.
 pub fn files(exported: &ExportedController) -> Vec<OutputFile> {
-    let head = comment(&exported.head(WIDTH));
+    let head = comment(&exported.head());
     let blocks = [block::block(exported), test_block::block(exported)];
     let portable =
         |one: &FunctionBlock| format!("{}\n{}END_FUNCTION_BLOCK\n", one.declaration, one.statements);

@@ -5,7 +5,7 @@ use phea_machine::{Deployed, DeployedState, Executed, SampledSignals};
 /// Number of test vectors.
 const VECTORS: usize = 256;
 
-/// What is done at a test vector.
+/// Operation of a test vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VectorOperation {
     /// One sample.
@@ -19,7 +19,7 @@ pub enum VectorOperation {
 /// One sample with its outputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestVector {
-    /// What is done.
+    /// Operation before the outputs are compared.
     pub operation: VectorOperation,
     /// Signals that are read.
     pub signals: SampledSignals,

@@ -24,7 +24,7 @@ pub(crate) struct AlternativeSentences {
     pub(crate) otherwise: Option<String>,
     /// Requirements in time that are not satisfied.
     pub(crate) missed: Vec<String>,
-    /// What the verdict does not include, without the name of the alternative.
+    /// Effects that the verdict does not include, without the name of the alternative.
     pub(crate) lacking: Vec<String>,
     /// Ranges that follow the rig.
     pub(crate) moved: Vec<String>,

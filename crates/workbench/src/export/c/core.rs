@@ -69,8 +69,9 @@ typedef struct {{
 /* State at rest, with a command of zero. */
 void {name}_reset({name}_state *state);
 
-/* State that holds this command while the signals do not change: a bumpless start. It is unchanged if
- * a signal or the command is no finite number. */
+/* State at which these signals give this command: a bumpless start. An integral part then moves on
+ * with the error, and a controller without one gives its response to the error instead. The command is
+ * neither limited nor rounded. Unchanged if a signal or the command is no finite number. */
 void {name}_hold({name}_state *state, const {name}_signals *signals, double command);
 
 /* One sample. */

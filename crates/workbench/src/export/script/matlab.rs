@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{anti_windup, number, numbers, plants, row, series};
+use super::{anti_windup, number, numbers, row, series};
 use crate::export::ExportedController;
 
 /// A structure with the name of the controller: sections, transfer functions in z, and plants.
@@ -82,7 +82,7 @@ fn family(exported: &ExportedController) -> String {
         let one = |&[re, im]: &[f64; 2]| format!("complex({}, {})", number(re), number(im));
         pairs.iter().map(one).collect::<Vec<_>>().join("; ")
     };
-    for (index, plant) in plants(exported).iter().enumerate() {
+    for (index, plant) in exported.plants.iter().enumerate() {
         let factors = &plant.factors;
         let _ = writeln!(
             text,

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use phea_dynamics::controller::Converter;
 
-use super::{anti_windup, number, numbers, plants, row, series};
+use super::{anti_windup, number, numbers, row, series};
 use crate::export::{ExportedController, VectorOperation};
 
 /// Classes and functions behind the numbers.
@@ -67,9 +67,9 @@ fn value(value: f64) -> String {
     }
 }
 
-/// Test vectors: what is done, signals, held command; command, before its limit, limited, invalid.
+/// Test vectors: operation, signals, held command; command, before its limit, limited, invalid.
 fn vectors(exported: &ExportedController) -> String {
-    let mut text = "# What is done, signals, held command; command, the same before its limit, limited, invalid.\nVECTORS: list[tuple[Any, ...]] = [\n".to_string();
+    let mut text = "# Operation, signals, held command; command, the same before its limit, limited, invalid.\nVECTORS: list[tuple[Any, ...]] = [\n".to_string();
     for vector in &exported.vectors {
         let operation = match vector.operation {
             VectorOperation::Step => "step",
@@ -108,7 +108,7 @@ PLANTS: list[tuple[Any, ...]] = [\n",
         let one = |&[re, im]: &[f64; 2]| format!("complex({}, {})", number(re), number(im));
         pairs.iter().map(one).collect::<Vec<_>>().join(", ")
     };
-    for plant in plants(exported) {
+    for plant in &exported.plants {
         let factors = &plant.factors;
         let _ = writeln!(
             text,

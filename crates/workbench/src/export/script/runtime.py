@@ -63,7 +63,11 @@ class Controller:
         self.limited = self.invalid = False
 
     def hold(self, command: float, *signals: float) -> None:
-        """State that holds a command while the signals, in the order of SIGNALS, do not change."""
+        """State at which the signals, in the order of SIGNALS, give a command.
+
+        An integral part then moves on with the error; a controller without one gives its response
+        to the error instead. The command is neither limited nor rounded.
+        """
         if not all(map(math.isfinite, (command, *signals))):
             return
         reference, measurement, added, pressure = self._read(signals)

@@ -79,12 +79,12 @@ fn declaration(exported: &ExportedController) -> String {
     };
     text.line("VAR_INPUT");
     variable(&mut text, "Enable", "BOOL", "one sample, once in every sample time");
-    variable(&mut text, "Reset", "BOOL", "state at rest, before the sample");
+    variable(&mut text, "Reset", "BOOL", "while TRUE, state at rest before each sample");
     variable(
         &mut text,
         "Hold",
         "BOOL",
-        "state that holds HeldCommand while the signals do not change, before the sample",
+        "while TRUE, state at which the signals give HeldCommand, before each sample",
     );
     variable(&mut text, "HeldCommand", "LREAL", "command for Hold");
     for signal in exported.signals() {
